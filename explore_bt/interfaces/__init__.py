@@ -1,0 +1,39 @@
+"""The contracts: one abstract class per plugin kind, and the values only they exchange."""
+
+from explore_bt.interfaces.controller import Controller, ControlOutput, ControlStatus
+from explore_bt.interfaces.driver import Driver
+from explore_bt.interfaces.exporter import Exporter, RobotProduct
+from explore_bt.interfaces.planner import Planner, never
+from explore_bt.interfaces.plugin import API_VERSION, Plugin, PluginOptions, RobotContext
+from explore_bt.interfaces.services import MapView, Pilot, RobotServices
+from explore_bt.interfaces.sink import Sink
+from explore_bt.interfaces.slam import Slam
+from explore_bt.interfaces.snapshot import Event, NodeInfo, NodeState, RobotSnapshot, RunInfo, TickSnapshot
+from explore_bt.interfaces.truth import GroundTruth
+
+__all__ = [
+    "API_VERSION",
+    "ControlOutput",
+    "ControlStatus",
+    "Controller",
+    "Driver",
+    "Event",
+    "Exporter",
+    "GroundTruth",
+    "MapView",
+    "NodeInfo",
+    "NodeState",
+    "Pilot",
+    "Planner",
+    "Plugin",
+    "PluginOptions",
+    "RobotContext",
+    "RobotProduct",
+    "RobotServices",
+    "RobotSnapshot",
+    "RunInfo",
+    "Sink",
+    "Slam",
+    "TickSnapshot",
+    "never",
+]

@@ -1,0 +1,72 @@
+"""Contract of drivers: the robot's body, simulated or real."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+
+from explore_bt.clock import Clock
+from explore_bt.interfaces.plugin import Plugin, RobotContext
+from explore_bt.interfaces.truth import GroundTruth
+from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+
+__all__ = ["Driver"]
+
+
+class Driver(Plugin):
+    """Sensors in, twists out.
+
+    Life: ``setup`` once, then ``read`` and ``command`` from the control thread, ``stop`` from any thread
+    at any time, ``close`` once. Properties are valid after ``setup``.
+    """
+
+    kind = "driver"
+
+    @abstractmethod
+    def setup(self, context: RobotContext) -> None:
+        """Open hardware or load the world; may take seconds.
+
+        Raises:
+            WorldError: a world that cannot be used, or a start inside an obstacle.
+            PluginError: options that do not fit this machine.
+        """
+
+    @property
+    @abstractmethod
+    def clock(self) -> Clock:
+        """The mission's time. A simulator's clock advances its world when someone waits on it."""
+
+    @property
+    @abstractmethod
+    def footprint_radius_m(self) -> float:
+        """Radius of the circular footprint about ``base_link``."""
+
+    @property
+    @abstractmethod
+    def limits(self) -> MotionLimits:
+        """What the body can do; the mission may ask for less."""
+
+    @property
+    @abstractmethod
+    def start(self) -> Pose2:
+        """Pose of ``base_link`` in ``map`` at set-up: as given, or as the driver chose."""
+
+    @abstractmethod
+    def read(self) -> Sequence[Measurement]:
+        """All measurements since the last call, in time order. Never blocks; empty is fine."""
+
+    @abstractmethod
+    def command(self, twist: Twist2) -> None:
+        """Drive at this twist until the next command. A driver stops by itself if none comes for 0.5 s."""
+
+    @abstractmethod
+    def stop(self) -> None:
+        """Halt as fast as is safe for the body. Idempotent, from any thread, never raises."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop and let go of everything. Idempotent."""
+
+    def truth(self) -> GroundTruth | None:
+        """The truth, where the driver is a simulator."""
+        return None

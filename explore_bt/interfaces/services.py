@@ -1,0 +1,92 @@
+"""What a robot offers to the leaves of its tree."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.exploration.clearance import clearance_field
+from explore_bt.interfaces.controller import ControlOutput
+from explore_bt.types import Estimate, OccupancyGrid, Path, Pose2, Scan2D
+
+__all__ = ["MapView", "Pilot", "RobotServices"]
+
+
+class MapView:
+    """One revision of the map with what is often derived from it, computed at most once."""
+
+    def __init__(self, grid: OccupancyGrid) -> None:
+        self.grid = grid
+
+    @cached_property
+    def clearance_m(self) -> NDArray[np.float32]:
+        """(rows, cols) float32, metres to the nearest obstacle **or unknown** cell."""
+        return clearance_field(self.grid)
+
+
+class Pilot(Protocol):
+    """The way from a decision to the wheels: controller, then safety gate, then driver."""
+
+    def follow(self, path: Path) -> None:
+        """Drive along a path from the next control step on."""
+
+    def hold(self) -> None:
+        """Come to rest under the limits."""
+
+    @property
+    def output(self) -> ControlOutput:
+        """The controller's last word on the present path."""
+
+    @property
+    def blocked_s(self) -> float:
+        """For how long the safety gate has been braking without a break, seconds; 0 while it passes."""
+
+
+class RobotServices(Protocol):
+    """Given to every leaf at construction; valid to use from ``initialise`` on."""
+
+    @property
+    def name(self) -> str:
+        """The robot's name in the mission."""
+
+    @property
+    def footprint_radius_m(self) -> float:
+        """Radius of the circular footprint."""
+
+    @property
+    def lidar_range_m(self) -> float:
+        """How far the lidar sees."""
+
+    @property
+    def home(self) -> Pose2:
+        """Where the mission began, ``map`` frame."""
+
+    @property
+    def pilot(self) -> Pilot:
+        """The way to the wheels."""
+
+    @property
+    def stop_requested(self) -> bool:
+        """The paper's ``stop_exploration``."""
+
+    @property
+    def distance_m(self) -> float:
+        """Driven since the start, metres."""
+
+    def now_s(self) -> float:
+        """Mission time, seconds."""
+
+    def estimate(self) -> Estimate:
+        """The newest pose."""
+
+    def view(self) -> MapView:
+        """The newest map."""
+
+    def scan(self) -> Scan2D | None:
+        """The newest scan, None before the first."""
+
+    def plan(self, goal: Pose2) -> Path:
+        """A path from here, by the mission's planner; raises a ``PlanningFailure``."""

@@ -1,0 +1,71 @@
+"""Contract of SLAM back ends: measurements in, pose and map out."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from pathlib import Path
+
+from explore_bt.interfaces.plugin import Plugin, RobotContext
+from explore_bt.types import Estimate, GridWindow, Measurement, OccupancyGrid, Trajectory
+
+__all__ = ["Slam"]
+
+
+class Slam(Plugin):
+    """Where the robot is and what its surroundings look like.
+
+    All methods are called by one thread (the control thread in simulated time, a thread of its own in
+    wall time); what they return is immutable and may be read by others.
+    """
+
+    kind = "slam"
+
+    @abstractmethod
+    def setup(self, context: RobotContext) -> None:
+        """Get ready: ``context.start`` is the pose in ``map`` to begin with (identity if None).
+
+        Compile and warm up here, never in ``update``.
+        """
+
+    @abstractmethod
+    def update(self, measurement: Measurement) -> None:
+        """Take one measurement, in time order; kinds it has no use for are ignored.
+
+        Bad data (NaN, empty scan, time going back) is survived and shows in ``estimate().health``.
+        """
+
+    @abstractmethod
+    def estimate(self) -> Estimate:
+        """The newest pose in ``map``, with covariance and health. Cheap."""
+
+    @abstractmethod
+    def grid(self) -> OccupancyGrid:
+        """The newest map; the same object as before while the revision stands."""
+
+    @abstractmethod
+    def changed_since(self, revision: int) -> GridWindow | None:
+        """Cells of ``grid()`` that may differ from that revision; None if that can't be told.
+
+        None also when the grid has grown or moved: the caller then takes all of it.
+        """
+
+    @abstractmethod
+    def trajectory(self) -> Trajectory:
+        """The best present belief about the whole way so far, one pose per scan, ``map`` frame."""
+
+    @abstractmethod
+    def figures(self) -> Mapping[str, float]:
+        """Numbers for the report: ``keyframes``, ``loop_closures``, ``ms_per_scan_median``, ..."""
+
+    @abstractmethod
+    def save(self, folder: Path) -> None:
+        """Write all that ``load`` needs to go on in this map."""
+
+    @abstractmethod
+    def load(self, folder: Path) -> None:
+        """Go on in a saved map; called after ``setup``.
+
+        Raises:
+            UserError: the folder holds no map of this plugin.
+        """

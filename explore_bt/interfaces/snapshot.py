@@ -1,0 +1,96 @@
+"""What observers are shown: the run as it begins, and every tick."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+
+from explore_bt.types import Estimate, MotionState, OccupancyGrid, Path, Pose2, Scan2D, Score
+
+__all__ = ["Event", "NodeInfo", "NodeState", "RobotSnapshot", "RunInfo", "TickSnapshot"]
+
+
+@dataclass(frozen=True, slots=True)
+class NodeInfo:
+    """A node of a built tree.
+
+    Attributes:
+        id: position in depth-first order, 0 is the root; parents come before children.
+        path: unique, from the root: ``complete/explore/find_next_heading``.
+        type: the YAML key (``sequence``, ``find_next_heading``).
+        place: ``file:line:column`` in the mission.
+    """
+
+    id: int
+    path: str
+    name: str
+    type: str
+    parent: int | None
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class NodeState:
+    """A node after a tick: ``success``, ``failure``, ``running`` or ``idle``, and its reason in words."""
+
+    status: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RunInfo:
+    """All that is known when a run begins."""
+
+    mission: str
+    mission_text: str
+    mission_sha256: str
+    seed: int
+    version: str
+    folder: FilePath
+    trees: Mapping[str, tuple[NodeInfo, ...]]
+    footprint_radius_m: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RobotSnapshot:
+    """One robot after a tick; every value is immutable.
+
+    Attributes:
+        nodes: in the order of ``RunInfo.trees[robot]``.
+        blackboard: key -> value after this tick.
+        gate_reason: empty while commands pass; else why the safety gate brakes.
+        true_pose: where the driver knows it.
+    """
+
+    robot: str
+    estimate: Estimate
+    grid: OccupancyGrid
+    scan: Scan2D | None
+    path: Path | None
+    motion: MotionState
+    gate_reason: str
+    nodes: tuple[NodeState, ...]
+    blackboard: Mapping[str, object]
+    score: Score
+    true_pose: Pose2 | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TickSnapshot:
+    """All robots after tick ``index`` at mission time ``stamp_s``."""
+
+    index: int
+    stamp_s: float
+    robots: tuple[RobotSnapshot, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something worth a line: ``level`` is ``info``, ``warning`` or ``error``."""
+
+    stamp_s: float
+    robot: str
+    level: str
+    source: str
+    message: str

@@ -1,0 +1,38 @@
+"""Frozen values that travel between the parts of a robot's stack.
+
+Frames are REP-105's ``map → odom → base_link``, units REP-103's: metres, radians, seconds.
+"""
+
+from explore_bt.types.estimate import Estimate, Health, Trajectory
+from explore_bt.types.grid import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
+from explore_bt.types.measurement import Imu, Measurement, PointCloud, Scan2D, WheelOdometry
+from explore_bt.types.motion import MotionLimits, MotionState
+from explore_bt.types.path import Path, Waypoint
+from explore_bt.types.pose import Pose2, Twist2, wrap_angle
+from explore_bt.types.result import Outcome, Result, Score
+
+__all__ = [
+    "FREE",
+    "OCCUPIED",
+    "UNKNOWN",
+    "Estimate",
+    "GridWindow",
+    "Health",
+    "Imu",
+    "Measurement",
+    "MotionLimits",
+    "MotionState",
+    "OccupancyGrid",
+    "Outcome",
+    "Path",
+    "PointCloud",
+    "Pose2",
+    "Result",
+    "Scan2D",
+    "Score",
+    "Trajectory",
+    "Twist2",
+    "Waypoint",
+    "WheelOdometry",
+    "wrap_angle",
+]

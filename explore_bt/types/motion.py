@@ -1,0 +1,44 @@
+"""Limits of motion, and the state of motion they bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from explore_bt.types.pose import Twist2
+
+__all__ = ["MotionLimits", "MotionState"]
+
+
+@dataclass(frozen=True, slots=True)
+class MotionLimits:
+    """Largest magnitudes of a unicycle's velocity, acceleration and jerk, linear and angular."""
+
+    speed_mps: float = 0.5
+    acceleration_mps2: float = 0.5
+    jerk_mps3: float = 2.0
+    turn_rate_rps: float = 1.2
+    turn_acceleration_rps2: float = 2.0
+    turn_jerk_rps3: float = 8.0
+
+    def capped_by(self, other: MotionLimits) -> MotionLimits:
+        """The stricter of the two, limit by limit."""
+        return MotionLimits(
+            min(self.speed_mps, other.speed_mps),
+            min(self.acceleration_mps2, other.acceleration_mps2),
+            min(self.jerk_mps3, other.jerk_mps3),
+            min(self.turn_rate_rps, other.turn_rate_rps),
+            min(self.turn_acceleration_rps2, other.turn_acceleration_rps2),
+            min(self.turn_jerk_rps3, other.turn_jerk_rps3),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class MotionState:
+    """The command that was last sent, and how fast it was changing.
+
+    The next command starts from here, whoever sent the last one: the controller or the brake.
+    """
+
+    twist: Twist2 = Twist2()
+    linear_acceleration_mps2: float = 0.0
+    angular_acceleration_rps2: float = 0.0

@@ -1,0 +1,73 @@
+"""How a mission ended, in words and numbers."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import asdict, dataclass, field
+
+__all__ = ["Outcome", "Result", "Score"]
+
+
+class Outcome(enum.StrEnum):
+    """Why a mission ended."""
+
+    EXPLORED = "explored"
+    STOPPED = "stopped"
+    BUDGET = "budget"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """Running figures of one robot; ``None`` where only the truth could tell and nobody knows it.
+
+    Attributes:
+        distance_m: driven so far, by the estimate.
+        coverage: share [0, 1] of the reachable observable floor that is mapped free.
+        contacts: separate touches of an obstacle.
+        clearance_m: from the robot's **centre** to the nearest obstacle, now.
+        min_clearance_m, mean_clearance_m: the same over the run (mean over distance driven).
+        ate_rmse_m: root mean square of the position error after the best rigid alignment.
+    """
+
+    distance_m: float = 0.0
+    coverage: float | None = None
+    contacts: int | None = None
+    clearance_m: float | None = None
+    min_clearance_m: float | None = None
+    mean_clearance_m: float | None = None
+    ate_rmse_m: float | None = None
+    distance_to_home_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """The content of ``result.json``.
+
+    Attributes:
+        outcome, reason: why the mission ended.
+        left_open: what was not explored and why, one sentence each.
+        slam: the SLAM plugin's own figures (``loop_closures``, ``keyframes``, ...).
+    """
+
+    outcome: Outcome
+    reason: str
+    mission: str
+    coverage: float | None
+    contacts: int | None
+    ate_rmse_m: float | None
+    path_length_m: float
+    mission_time_s: float
+    wall_time_s: float
+    min_clearance_m: float | None
+    mean_clearance_m: float | None
+    distance_to_home_m: float
+    seed: int
+    mission_sha256: str
+    version: str
+    left_open: tuple[str, ...] = ()
+    slam: dict[str, float] = field(default_factory=dict)
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain values, ready for JSON."""
+        return asdict(self)
