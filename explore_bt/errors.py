@@ -16,12 +16,15 @@ A message names the place, what was found, what was expected, and what to type n
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 __all__ = [
     "Cancelled",
     "ComponentFailure",
     "ExploreError",
+    "Fault",
     "GoalBlocked",
     "GoalUnknown",
     "MissionError",
@@ -42,8 +45,39 @@ class UserError(ExploreError):
     """The input is at fault; the message alone must be enough to mend it."""
 
 
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing wrong in a mission.
+
+    Attributes:
+        file: as the user named it; ``--set name=value`` for a fault in an override.
+        line, column: from 1; line 0 where the file has none (an override, a file that cannot be read).
+        message: what was found, one phrase.
+        hint: what to write instead; may be empty.
+        excerpt: the source line.
+        width: how many characters of it are meant.
+    """
+
+    file: str
+    line: int
+    column: int
+    message: str
+    hint: str = ""
+    excerpt: str = ""
+    width: int = 1
+
+    @property
+    def place(self) -> str:
+        """``file:line:column``, as editors and terminals follow it."""
+        return f"{self.file}:{self.line}:{self.column}" if self.line else self.file
+
+
 class MissionError(UserError):
     """A mission file with faults; ``str()`` shows all of them, each with its place."""
+
+    def __init__(self, message: str, faults: Sequence[Fault] = ()) -> None:
+        super().__init__(message)
+        self.faults = tuple(faults)
 
 
 class WorldError(UserError):

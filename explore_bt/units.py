@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
+from pydantic import BeforeValidator, PlainValidator, ValidationInfo, WithJsonSchema
 
 __all__ = [
     "ACCELERATION",
@@ -202,7 +202,7 @@ def _resolve_file(value: object, info: ValidationInfo) -> Path:
 
 FilePath = Annotated[
     Path,
-    BeforeValidator(_resolve_file),
+    PlainValidator(_resolve_file),
     WithJsonSchema({"type": "string", "description": "a file, relative to the mission's folder"}),
 ]
 """A file; a relative one is looked up in the folder given as ``base_dir`` in the validation context."""

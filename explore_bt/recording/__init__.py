@@ -1,1 +1,24 @@
-"""recording"""
+"""The recording of a run: one MCAP file that outlives a crash and opens in Foxglove as it is."""
+
+from explore_bt.recording.foxglove import decode_grid
+from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions
+from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
+from explore_bt.recording.topics import TOPICS, Topic
+from explore_bt.recording.values import to_json
+
+__all__ = [
+    "SINKS",
+    "TOPICS",
+    "McapRecorder",
+    "McapRecorderOptions",
+    "RecordedMessage",
+    "Recording",
+    "RecordingError",
+    "Topic",
+    "decode_grid",
+    "read_recording",
+    "to_json",
+]
+
+SINKS = (McapRecorder,)
+"""The sinks of this package, for the plugin host."""

@@ -1,7 +1,52 @@
 """What trees are made of: ports, blackboard, the base of leaves, and the control nodes."""
 
 from explore_bt.tree.blackboard import Blackboard
+from explore_bt.tree.control import (
+    ControlNode,
+    EntryCondition,
+    Fallback,
+    ForceFailure,
+    ForceSuccess,
+    Guard,
+    Invert,
+    OnFailure,
+    Parallel,
+    ReactiveFallback,
+    ReactiveSequence,
+    Repeat,
+    Retry,
+    Sequence,
+    Subtree,
+    Timeout,
+    halt,
+)
 from explore_bt.tree.leaf import Leaf, Status
 from explore_bt.tree.ports import REQUIRED, Input, Key, Output, PortUnsetError
 
-__all__ = ["REQUIRED", "Blackboard", "Input", "Key", "Leaf", "Output", "PortUnsetError", "Status"]
+__all__ = [
+    "REQUIRED",
+    "Blackboard",
+    "ControlNode",
+    "EntryCondition",
+    "Fallback",
+    "ForceFailure",
+    "ForceSuccess",
+    "Guard",
+    "Input",
+    "Invert",
+    "Key",
+    "Leaf",
+    "OnFailure",
+    "Output",
+    "Parallel",
+    "PortUnsetError",
+    "ReactiveFallback",
+    "ReactiveSequence",
+    "Repeat",
+    "Retry",
+    "Sequence",
+    "Status",
+    "Subtree",
+    "Timeout",
+    "halt",
+]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar, cast
 
 import py_trees
 from py_trees.common import Status
@@ -13,6 +13,8 @@ from explore_bt.tree.blackboard import Blackboard
 from explore_bt.tree.ports import REQUIRED, Input, Key, Output
 
 __all__ = ["Leaf", "Status"]
+
+T = TypeVar("T")
 
 
 class Leaf(py_trees.behaviour.Behaviour):
@@ -63,3 +65,9 @@ class Leaf(py_trees.behaviour.Behaviour):
     def say(self, message: str) -> None:
         """Give the reason for what the leaf is about, one phrase with numbers and units."""
         self.feedback_message = message
+
+    def recall(self, port: str, default: T) -> T:
+        """The value an output port wrote last, or ``default`` before the first time."""
+        bound = self.bindings[port]
+        assert isinstance(bound, Key)  # an output is always bound to an entry
+        return cast(T, self.blackboard.get(bound.name, default))

@@ -1,0 +1,40 @@
+# Needs python3 (3.11 or newer), pip and make; everything else goes into .venv.
+PYTHON ?= python3
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+.PHONY: demo test lint types docs bench clean
+
+demo: .venv/run.done       ## explore a flat nobody has told the robot about
+	@$(BIN)/explore-bt run missions/01_apartment.yaml
+
+test: .venv/dev.done       ## every test, lint and type check included
+	@$(BIN)/python -m pytest -n 2
+
+lint: .venv/dev.done       ## style
+	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/lint-imports --no-cache
+
+types: .venv/dev.done      ## types
+	@$(BIN)/mypy
+
+docs: .venv/dev.done       ## the tests that keep the documentation true
+	@$(BIN)/python -m pytest -q tests/docs tests/cli/test_docs.py
+
+bench: .venv/dev.done      ## the tables of docs/benchmarks.md (the whole takes about half an hour)
+	@$(BIN)/python benchmarks/sim2d.py && $(BIN)/python benchmarks/apartment.py && $(BIN)/python benchmarks/floorplans.py
+
+clean:                     ## forget the environment and what was built
+	rm -rf .venv dist build
+
+# Debian's python3 comes without ensurepip: pip then installs itself from outside.
+.venv/bin/python:
+	@$(PYTHON) -m venv .venv 2>/dev/null || { rm -rf .venv; $(PYTHON) -m venv --without-pip .venv \
+	  && $(PYTHON) -m pip --python .venv/bin/python install --quiet pip; }
+
+.venv/run.done: pyproject.toml | .venv/bin/python
+	@echo "installing explore-bt and its libraries into .venv: about a minute"
+	@$(PIP) install --editable . && touch $@
+
+.venv/dev.done: pyproject.toml | .venv/bin/python
+	@echo "installing explore-bt, its libraries and its tools into .venv: about a minute"
+	@$(PIP) install --editable '.[dev]' && touch $@ .venv/run.done

@@ -1,0 +1,125 @@
+"""Leaf: drive to a waypoint along the planner's path, and mind what the map learns on the way."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from explore_bt.errors import ComponentFailure, PlanningFailure
+from explore_bt.exploration import visible_unknown_area
+from explore_bt.exploration.clearance import clearance_at
+from explore_bt.interfaces import ControlStatus
+from explore_bt.tree import Input, Key, Leaf, Output, Status
+from explore_bt.types import Path, Pose2, Waypoint
+from explore_bt.units import Area, Duration
+
+__all__ = ["DriveTo"]
+
+_LOOK_PERIOD_S = 1.0
+_WATCHED_M = 4.0
+
+
+class DriveTo(Leaf):
+    """Plans a path to the goal and follows it; plans anew when the path is cut or the robot is held.
+
+    SUCCESS at the goal, or as soon as nothing new is to be seen from it (``until_seen``).
+    FAILURE when no path is left; the planner's typed reason goes to ``failure``.
+    """
+
+    type_key = "drive_to"
+
+    goal: Input[Waypoint] = Input(Waypoint, default=Key("goal"), doc="where to")
+    until_seen: Input[float] = Input(
+        Area,
+        default=0.0,
+        ge=0.0,
+        doc="stop early once less new area than this is expected at the goal; 0 always drives to the end",
+    )
+    patience: Input[float] = Input(
+        Duration, default=2.0, ge=0.0, doc="how long the safety gate may hold the robot before a new plan"
+    )
+    replans: Input[int] = Input(int, default=3, ge=0, doc="new plans after being held, before giving up")
+    failure: Output[str] = Output(str, default=Key("failure"), doc="code of the reason for a failure")
+
+    def initialise(self) -> None:
+        """A new drive begins."""
+        self._path: Path | None = None
+        self._held = 0
+        self._checked_revision = -1
+        self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
+
+    def update(self) -> Status:
+        """Plan when there is no path, else watch the one being followed."""
+        if self._path is None:
+            return self._plan()
+        if self._is_seen():
+            return Status.SUCCESS
+        output = self.robot.pilot.output
+        if output.status is ControlStatus.ARRIVED:
+            self.say("arrived")
+            return Status.SUCCESS
+        if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:
+            return self._plan_after_hold(output.reason)
+        if self._is_cut():
+            return self._plan()
+        return Status.RUNNING
+
+    def terminate(self, new_status: Status) -> None:
+        """Whoever cuts the drive off, or finds no way on, leaves a robot that comes to rest."""
+        if new_status is not Status.SUCCESS:
+            self.robot.pilot.hold()
+
+    def _plan(self) -> Status:
+        goal = self.goal
+        try:
+            self._path = self.robot.plan(goal.pose)
+        except (PlanningFailure, ComponentFailure) as refusal:
+            self.failure = refusal.code if isinstance(refusal, PlanningFailure) else "planner_failed"
+            self.say(f"no path: {refusal}")
+            return Status.FAILURE
+        self.robot.pilot.follow(self._path)
+        x, y = goal.position
+        self.say(
+            f"to ({x:.1f}, {y:.1f}): {self._path.length_m:.1f} m, closest {self._path.min_clearance_m:.2f} m"
+        )
+        return Status.RUNNING
+
+    def _plan_after_hold(self, reason: str) -> Status:
+        self._held += 1
+        if self._held > self.replans:
+            self.failure = "held"
+            self.say(f"gave up after {self._held} holds: {reason or 'the safety gate braked'}")
+            return Status.FAILURE
+        return self._plan()
+
+    def _is_cut(self) -> bool:
+        """Whether the way ahead has become too tight in the newest map."""
+        assert self._path is not None
+        grid = self.robot.view().grid
+        if grid.revision == self._checked_revision:
+            return False
+        self._checked_revision = grid.revision
+        here = self.robot.estimate().T_map_base
+        ahead = _ahead(self._path, here)
+        radius = self.robot.footprint_radius_m
+        needed = min(radius, float(ahead[:, 2].min()))
+        return bool(clearance_at(grid, ahead[:, :2], radius).min() < needed)
+
+    def _is_seen(self) -> bool:
+        if self.until_seen <= 0.0 or self.robot.now_s() < self._next_look_s:
+            return False
+        self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
+        area = visible_unknown_area(self.robot.view().grid, self.goal.position, self.robot.lidar_range_m)
+        if area >= self.until_seen:
+            return False
+        self.say(f"seen from afar: only {area:.2f} m² would be new at the goal")
+        return True
+
+
+def _ahead(path: Path, here: Pose2) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    """(N, 3) x, y and planned clearance of the poses within the next metres from the nearest one on."""
+    offsets = path.poses[:, :2] - np.array(here.xy)
+    nearest = int(np.argmin(np.einsum("ij,ij->i", offsets, offsets)))
+    steps = np.diff(path.poses[nearest:, :2], axis=0)
+    along = np.concatenate(([0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))))
+    watched = slice(nearest, nearest + int(np.searchsorted(along, _WATCHED_M, side="right")))
+    return np.column_stack((path.poses[watched, :2], path.clearance_m[watched]))

@@ -1,0 +1,35 @@
+"""Leaf: strike a goal that could not be reached off the list."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from explore_bt.tree import Input, Key, Leaf, Output, Status
+from explore_bt.types import Waypoint
+
+__all__ = ["GiveUpGoal", "GivenUp"]
+
+
+@dataclass(frozen=True, slots=True)
+class GivenUp:
+    """A place (x, y, metres, ``map`` frame) that is not tried again, and why."""
+
+    position: tuple[float, float]
+    reason: str
+
+
+class GiveUpGoal(Leaf):
+    """Remembers the present goal as one that is not worth another try."""
+
+    type_key = "give_up_goal"
+
+    goal: Input[Waypoint] = Input(Waypoint, default=Key("goal"), doc="the goal that failed")
+    failure: Input[str] = Input(str, default=Key("failure"), doc="code of the reason")
+    given_up: Output[tuple[GivenUp, ...]] = Output(tuple, default=Key("given_up"), doc="all such places")
+
+    def update(self) -> Status:
+        """Append to the memory."""
+        x, y = self.goal.position
+        self.given_up = (*self.recall("given_up", ()), GivenUp((x, y), self.failure))
+        self.say(f"({x:.1f}, {y:.1f}) is given up: {self.failure}")
+        return Status.SUCCESS

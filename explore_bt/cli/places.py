@@ -1,0 +1,61 @@
+"""Where missions are found and where runs are written."""
+
+from __future__ import annotations
+
+import difflib
+from datetime import datetime
+from pathlib import Path
+
+import explore_bt
+from explore_bt.errors import UserError
+
+__all__ = ["find_mission", "new_run_folder", "shipped_missions"]
+
+
+def shipped_missions() -> dict[str, Path]:
+    """The missions that come with explore-bt, by bare name: packaged in a wheel, beside it in a checkout."""
+    package = Path(explore_bt.__file__).parent
+    folder = package / "missions" if (package / "missions").is_dir() else package.parent / "missions"
+    return {path.stem: path for path in sorted(folder.glob("[0-9]*.yaml"))}
+
+
+def find_mission(text: str) -> Path:
+    """The mission that a person means: a file, or the bare name of a shipped one.
+
+    Raises:
+        UserError: neither; lists the shipped ones.
+    """
+    path = Path(text)
+    if path.is_file():
+        return path
+    shipped = shipped_missions()
+    if text in shipped:
+        return shipped[text]
+    if path.is_dir():
+        raise UserError(f"{text} is a folder; name a mission file in it")
+    close = difflib.get_close_matches(path.stem, shipped, n=1)
+    hint = f'did you mean "{close[0]}"? ' if close else ""
+    names = ", ".join(shipped) if shipped else "none"
+    raise UserError(f"there is no mission {text}; {hint}Shipped missions: {names}")
+
+
+def new_run_folder(out: Path | None, mission: str) -> Path:
+    """The folder for a run's files, not made yet: ``out``, else ``runs/<mission>-<time>``.
+
+    Raises:
+        UserError: it exists and holds something; runs are never mixed or overwritten.
+    """
+    folder = out or _free(Path("runs") / f"{mission}-{datetime.now():%Y%m%d-%H%M%S}")
+    if folder.is_file():
+        raise UserError(f"{folder} is a file; name a new folder with --out")
+    if folder.is_dir() and any(folder.iterdir()):
+        raise UserError(f"{folder} is not empty; a run never overwrites another, name a new folder with --out")
+    return folder
+
+
+def _free(folder: Path) -> Path:
+    number, candidate = 1, folder
+    while candidate.exists():  # two runs begun in the same second
+        number += 1
+        candidate = folder.with_name(f"{folder.name}-{number}")
+    return candidate

@@ -1,0 +1,94 @@
+"""``explore-bt run``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from explore_bt.cli.guard import DONE, FAILED, STOPPED, Crash, guarded
+from explore_bt.cli.overrides import parse_overrides
+from explore_bt.cli.places import find_mission, new_run_folder
+from explore_bt.cli.run_log import run_log
+from explore_bt.cli.stopping import stopping_by_signal
+from explore_bt.cli.summary import summary_lines
+from explore_bt.errors import UserError
+
+if TYPE_CHECKING:
+    from explore_bt.interfaces import Sink
+    from explore_bt.mission import Mission
+    from explore_bt.plugin import Registry
+    from explore_bt.types import Outcome, Result
+
+__all__ = ["run"]
+
+
+@guarded
+def run(
+    mission: Annotated[str, typer.Argument(help="A mission file, or the name of a shipped mission.")],
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of every random draw; the same seed, the same run.")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the results, new or empty; else runs/<mission>-<time>.")
+    ] = None,
+    headless: Annotated[bool, typer.Option("--headless", help="No live view, a line every ten seconds.")] = False,
+    verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Show the log.")] = False,
+) -> None:
+    """Run a mission and leave its map, trajectory, recording and report in a folder.
+
+    Exit code: 0 explored, 1 failed or budget spent, 2 wrong input, 130 stopped by hand.
+    Ctrl-C stops the robot safely and saves the results.
+    """
+    from explore_bt.mission import load_mission
+    from explore_bt.plugin import load_plugins
+
+    path, overrides = find_mission(mission), parse_overrides(set_ or ())
+    registry = load_plugins(inline_dir=path.parent).registry
+    checked = load_mission(path, registry, overrides)
+    folder = new_run_folder(out, path.stem)
+    with run_log(folder / "run.log", verbose=verbose):
+        result = _drive(checked, registry, folder, seed, live=not headless and sys.stdout.isatty())
+    _show(result, folder)
+    raise typer.Exit(_exit_code(result.outcome))
+
+
+def _drive(mission: Mission, registry: Registry, folder: Path, seed: int, *, live: bool) -> Result:
+    from explore_bt.runtime import StopFlag, run_mission
+
+    stop = StopFlag()
+    sinks = _sinks(registry, live=live)
+    with stopping_by_signal(stop):
+        try:
+            return run_mission(mission, registry=registry, out=folder, seed=seed, sinks=sinks, stop=stop)
+        except UserError:
+            raise
+        except Exception as fault:
+            raise Crash(folder) from fault
+
+
+def _sinks(registry: Registry, *, live: bool) -> list[Sink]:
+    from explore_bt.cli.progress import Progress
+
+    shown: type[Sink] = registry.get("sink", "terminal") if live else Progress
+    classes: list[type[Sink]] = [registry.get("sink", "mcap"), registry.get("sink", "report"), shown]
+    return [sink(sink.Options()) for sink in classes]
+
+
+def _show(result: Result, folder: Path) -> None:
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console(highlight=False)
+    for label, text in summary_lines(result, folder):
+        line = Text(f"{label:<10} ", style="bold")
+        path = Path(text)
+        style = f"not bold link file://{path.resolve()}" if path.is_file() else "not bold"
+        console.print(line.append(text, style=style), soft_wrap=True)
+
+
+def _exit_code(outcome: Outcome) -> int:
+    return {"explored": DONE, "stopped": STOPPED}.get(str(outcome), FAILED)

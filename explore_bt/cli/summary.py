@@ -1,0 +1,47 @@
+"""The last words of a run: how it ended, where the files are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from explore_bt.cli.human import count, duration, percent
+
+if TYPE_CHECKING:
+    from explore_bt.types import Result
+
+__all__ = ["summary_lines"]
+
+_FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", "recording.mcap"))
+
+
+def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:
+    """Label and text of each line; figures that nobody knows are left out."""
+    lines = [(str(result.outcome), " · ".join(_figures(result)))]
+    lines += [("reason", result.reason)] if result.reason else []
+    lines += [("left open", sentence) for sentence in result.left_open]
+    lines += [(label, str(path)) for label, name in _FILES for path in _files(folder, name)]
+    return lines
+
+
+def _files(folder: Path, name: str) -> list[Path]:
+    """The file of a single robot, else one per robot in folders of their own."""
+    return [folder / name] if (folder / name).is_file() else sorted(folder.glob(f"*/{name}"))
+
+
+def _figures(result: Result) -> list[str]:
+    figures = []
+    if result.coverage is not None:
+        figures.append(f"{percent(result.coverage)} of the reachable floor")
+    figures += [f"{result.path_length_m:.1f} m", duration(result.mission_time_s)]
+    if result.contacts is not None:
+        figures.append(count(result.contacts, "contact"))
+    if result.min_clearance_m is not None:
+        figures.append(f"closest {result.min_clearance_m:.2f} m")
+    return [*figures, _home(result.distance_to_home_m)]
+
+
+def _home(distance_m: float) -> str:
+    if distance_m < 0.5:
+        return f"home within {distance_m * 100:.0f} cm"
+    return f"{distance_m:.1f} m from home"

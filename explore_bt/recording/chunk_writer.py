@@ -1,0 +1,61 @@
+"""An MCAP file that closes its chunks on mission time, so that little is ever at stake."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from mcap.writer import Writer
+
+from explore_bt.recording.schemas import schema_text
+from explore_bt.recording.topics import PROFILE
+
+__all__ = ["ChunkWriter"]
+
+
+class ChunkWriter:
+    """Writes JSON messages; what is older than ``period_ns`` of mission time is in the file.
+
+    A chunk goes to the operating system as soon as it is closed, so a killed process loses only the
+    one that was open.
+    """
+
+    def __init__(self, path: Path, version: str, period_ns: int) -> None:
+        self._file = path.open("wb")
+        self._writer = Writer(self._file)
+        self._writer.start(profile=PROFILE, library=f"explore-bt {version}")
+        self._period_ns = period_ns
+        self._chunk_begin_ns: int | None = None
+        self._channels: dict[str, int] = {}
+        self._sequence: dict[int, int] = {}
+
+    def register(self, topics: Iterable[tuple[str, str]]) -> None:
+        """Declare topics: pairs of topic and schema name."""
+        schemas: dict[str, int] = {}
+        for topic, schema in topics:
+            if schema not in schemas:
+                schemas[schema] = self._writer.register_schema(schema, "jsonschema", schema_text(schema))
+            self._channels[topic] = self._writer.register_channel(topic, "json", schemas[schema])
+
+    def write(self, topic: str, time_ns: int, text: str) -> None:
+        """Add a message; the chunk is closed first if this message is past its time."""
+        if self._chunk_begin_ns is None:
+            self._chunk_begin_ns = time_ns
+        elif time_ns - self._chunk_begin_ns >= self._period_ns:
+            self.flush()
+            self._chunk_begin_ns = time_ns
+        channel = self._channels[topic]
+        sequence = self._sequence[channel] = self._sequence.get(channel, -1) + 1
+        # a lone surrogate in foreign text becomes its own JSON escape
+        data = text.encode("utf-8", "backslashreplace")
+        self._writer.add_message(channel, time_ns, data, time_ns, sequence)
+
+    def flush(self) -> None:
+        """Close the open chunk."""
+        self._writer.flush()
+
+    def close(self) -> None:
+        """Write the index and close the file; idempotent."""
+        if not self._file.closed:
+            self._writer.finish()
+            self._file.close()

@@ -1,0 +1,116 @@
+"""The sink that records a run."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+
+from pydantic import Field
+
+from explore_bt.interfaces import API_VERSION, Event, PluginOptions, RunInfo, Sink, TickSnapshot
+from explore_bt.recording.chunk_writer import ChunkWriter
+from explore_bt.recording.foxglove import log_message, stamp_ns
+from explore_bt.recording.robot_track import Periods, RobotTrack
+from explore_bt.recording.topics import ROBOT_TOPICS, RUN_TOPICS
+from explore_bt.recording.values import to_json
+from explore_bt.types import Result
+from explore_bt.units import Duration
+
+__all__ = ["McapRecorder", "McapRecorderOptions"]
+
+
+class McapRecorderOptions(PluginOptions):
+    """How often things are written, in mission time."""
+
+    chunk_period: Duration = Field(1.0, gt=0, description="a killed process loses at most this much")
+    key_frame_period: Duration = Field(5.0, gt=0, description="between full states of tree and blackboard")
+    scan_period: Duration = Field(0.5, gt=0, description="between scans")
+    map_period: Duration = Field(2.0, gt=0, description="between maps; longer above 80,000 cells")
+
+
+class McapRecorder(Sink):
+    """Writes ``recording.mcap`` into the run's folder; the same run gives the same bytes."""
+
+    name = "mcap"
+    api_version = API_VERSION
+    Options = McapRecorderOptions
+
+    def __init__(self, options: PluginOptions) -> None:
+        super().__init__(options)
+        self._settings = McapRecorderOptions.model_validate(options.model_dump())
+        self._writer: ChunkWriter | None = None
+        self._tracks: dict[str, RobotTrack] = {}
+        self._time_ns = 0
+
+    def open(self, run: RunInfo) -> None:
+        """Create the file and write what is known from the start."""
+        settings = self._settings
+        periods = Periods(
+            key_frame=stamp_ns(settings.key_frame_period),
+            scan=stamp_ns(settings.scan_period),
+            map=stamp_ns(settings.map_period),
+        )
+        writer = ChunkWriter(run.folder / "recording.mcap", run.version, stamp_ns(settings.chunk_period))
+        writer.register(
+            [(topic.pattern, topic.schema) for topic in RUN_TOPICS]
+            + [(topic.of(robot), topic.schema) for robot in run.trees for topic in ROBOT_TOPICS]
+        )
+        self._tracks = {robot: RobotTrack(robot, writer.write, periods) for robot in run.trees}
+        self._writer = writer
+        writer.write("/run", 0, _run_text(run))
+        writer.flush()
+
+    def on_tick(self, tick: TickSnapshot) -> None:
+        """Write what the tick has changed."""
+        self._time_ns = stamp_ns(tick.stamp_s)
+        for robot in tick.robots:
+            self._tracks[robot.robot].on_tick(self._time_ns, tick.index, robot)
+
+    def on_event(self, event: Event) -> None:
+        """Write the event's line."""
+        if self._writer is not None:
+            time_ns = stamp_ns(event.stamp_s)
+            self._writer.write("/events", time_ns, log_message(time_ns, event))
+
+    def close(self, result: Result | None) -> None:
+        """Write the last maps and the result, then the index."""
+        writer, self._writer = self._writer, None
+        if writer is None:
+            return
+        for track in self._tracks.values():
+            track.close(self._time_ns)
+        if result is not None:
+            writer.write("/result", self._time_ns, _result_text(result))
+        writer.close()
+
+
+def _run_text(run: RunInfo) -> str:
+    return json.dumps(
+        {
+            "mission": run.mission,
+            "mission_text": run.mission_text,
+            "mission_sha256": run.mission_sha256,
+            "seed": run.seed,
+            "version": run.version,
+            "footprint_radius_m": dict(run.footprint_radius_m),
+            "trees": {robot: [asdict(node) for node in nodes] for robot, nodes in run.trees.items()},
+        },
+        ensure_ascii=False,
+    )
+
+
+def _result_text(result: Result) -> str:
+    """The result without what a clock on the wall has measured: two equal runs are equal files."""
+    figures = result.as_dict()
+    figures.pop("wall_time_s")
+    figures["left_open"] = list(result.left_open)
+    figures["slam"] = {name: value for name, value in result.slam.items() if not _is_computing_time(name)}
+    return json.dumps({name: _figure(value) for name, value in figures.items()}, ensure_ascii=False)
+
+
+def _figure(value: object) -> object:
+    return [str(line) for line in value] if isinstance(value, list) else to_json(value)
+
+
+def _is_computing_time(name: str) -> bool:
+    return "wall" in name or "cpu" in name or "ms" in name.split("_")

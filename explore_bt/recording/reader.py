@@ -1,0 +1,154 @@
+"""Reads a recording, whole or cut off in the middle."""
+
+from __future__ import annotations
+
+import json
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import zstandard
+from mcap.exceptions import McapError
+from mcap.records import Channel, Chunk, Footer, Header, Message
+from mcap.stream_reader import StreamReader, breakup_chunk
+
+from explore_bt.errors import UserError
+from explore_bt.recording.topics import PROFILE
+
+__all__ = ["RecordedMessage", "Recording", "RecordingError", "read_recording"]
+
+_MAGIC = b"\x89MCAP0\r\n"
+_BROKEN = (McapError, struct.error, zstandard.ZstdError, ValueError, EOFError, zlib.error)
+
+
+class RecordingError(UserError):
+    """A file that is not a recording of ours, or holds not even its first chunk."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedMessage:
+    """A message as it was written: ``value`` is what its JSON says."""
+
+    topic: str
+    stamp_s: float
+    value: dict[str, Any]
+
+
+class Recording:
+    """What can be read of a run.
+
+    Attributes:
+        path: the file.
+        topics: all topics of the file, in the order they were declared.
+        info: the message on ``/run``.
+        damage: empty for a whole file, else in words what is missing.
+    """
+
+    def __init__(self, path: Path, chunks: list[Chunk], damage: str) -> None:
+        self.path = path
+        self.damage = damage
+        self._chunks = chunks
+        self._channels: dict[int, str] = {}
+        for chunk in chunks[:1]:  # the writer declares every channel in its first chunk
+            for record in breakup_chunk(chunk):
+                if isinstance(record, Channel):
+                    self._channels[record.id] = record.topic
+        self.topics = tuple(self._channels.values())
+        self.info = next((message.value for message in self.messages("/run")), {})
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the file was closed as it should be."""
+        return not self.damage
+
+    @property
+    def duration_s(self) -> float:
+        """Mission time of the last message, seconds."""
+        return max((chunk.message_end_time for chunk in self._chunks), default=0) * 1e-9
+
+    @property
+    def robots(self) -> tuple[str, ...]:
+        """Names of the robots."""
+        return tuple(self.info.get("trees", {}))
+
+    def messages(
+        self, topic: str | None = None, start_s: float = 0.0, end_s: float = float("inf")
+    ) -> Iterator[RecordedMessage]:
+        """Messages of one topic (None: of all) with ``start_s <= stamp <= end_s``, in file order."""
+        for chunk in self._chunks:
+            if chunk.message_end_time * 1e-9 < start_s or chunk.message_start_time * 1e-9 > end_s:
+                continue
+            for record in breakup_chunk(chunk):
+                if not isinstance(record, Message):
+                    continue
+                name, stamp_s = self._channels[record.channel_id], record.log_time * 1e-9
+                if topic in (None, name) and start_s <= stamp_s <= end_s:
+                    yield RecordedMessage(name, stamp_s, json.loads(record.data))
+
+
+def read_recording(path: Path) -> Recording:
+    """Open a recording, also one whose writer was killed.
+
+    Of a cut file every closed chunk is read; ``damage`` then says where it ends.
+
+    Raises:
+        RecordingError: no such file, a foreign file, or one cut before its first chunk ended.
+    """
+    try:
+        size = path.stat().st_size
+        file = path.open("rb")
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read: {error.strerror}; give a recording.mcap") from None
+    with file:
+        if file.read(len(_MAGIC)) != _MAGIC:
+            found = "an empty file" if size == 0 else "not an MCAP file"
+            raise RecordingError(f"{path}: {found}; expected a recording.mcap written by explore-bt run")
+        file.seek(0)
+        chunks, whole, damaged = _read_chunks(
+            path, StreamReader(file, emit_chunks=True, record_size_limit=size)
+        )
+    if not chunks:
+        raise RecordingError(f"{path}: cut off before its first second was written; nothing can be recovered")
+    return Recording(path, chunks, _damage(chunks, whole, damaged))
+
+
+def _read_chunks(path: Path, reader: StreamReader) -> tuple[list[Chunk], bool, int]:
+    """All sound chunks, whether the end of the file was reached, and how many chunks were unsound."""
+    chunks: list[Chunk] = []
+    damaged = 0
+    try:
+        for record in reader.records:
+            if isinstance(record, Header) and record.profile != PROFILE:
+                raise RecordingError(
+                    f"{path}: an MCAP file of profile {record.profile!r} by {record.library!r}; "
+                    f"expected a recording.mcap written by explore-bt run ({PROFILE!r})"
+                )
+            if isinstance(record, Chunk):
+                sound = _is_sound(record)
+                damaged += not sound
+                chunks += [record] if sound else []
+            if isinstance(record, Footer):
+                return chunks, True, damaged
+    except _BROKEN:
+        pass  # the end of a cut file: every chunk before it has been kept
+    return chunks, False, damaged
+
+
+def _is_sound(chunk: Chunk) -> bool:
+    try:
+        breakup_chunk(chunk, validate_crc=True)
+    except _BROKEN:
+        return False
+    return True
+
+
+def _damage(chunks: list[Chunk], whole: bool, damaged: int) -> str:
+    if whole and not damaged:
+        return ""
+    end_s = max(chunk.message_end_time for chunk in chunks) * 1e-9
+    lost = f"{damaged} damaged chunk{'s' if damaged > 1 else ''} left out" if damaged else ""
+    cut = "" if whole else f"cut off: ends at {end_s:.1f} s of mission time"
+    return "; ".join(part for part in (cut, lost) if part)

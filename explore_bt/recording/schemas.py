@@ -1,0 +1,100 @@
+"""JSON Schemas of the topics: Foxglove's well-known ones, and our own.
+
+Foxglove knows the first group by name; the members listed here are those of its published schemas.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+__all__ = ["schema_text"]
+
+_Schema = Mapping[str, Any]
+
+
+def _object(**properties: _Schema) -> dict[str, Any]:
+    return {"type": "object", "properties": properties}
+
+
+def _array(items: _Schema) -> dict[str, Any]:
+    return {"type": "array", "items": items}
+
+
+_NUMBER: _Schema = {"type": "number"}
+_MAYBE: _Schema = {"type": ["number", "null"]}
+_INTEGER: _Schema = {"type": "integer"}
+_TEXT: _Schema = {"type": "string"}
+_FLAG: _Schema = {"type": "boolean"}
+_ANY: _Schema = {"type": "object"}
+_TIME = {"title": "time", **_object(sec=_INTEGER, nsec=_INTEGER)}
+_POSE = _object(
+    position=_object(x=_NUMBER, y=_NUMBER, z=_NUMBER),
+    orientation=_object(x=_NUMBER, y=_NUMBER, z=_NUMBER, w=_NUMBER),
+)
+_NODE_STATE = _object(id=_INTEGER, status=_TEXT, message=_TEXT)
+_NODE = _object(
+    id=_INTEGER, path=_TEXT, name=_TEXT, type=_TEXT, parent={"type": ["integer", "null"]}, place=_TEXT
+)
+
+_SCHEMAS: Mapping[str, _Schema] = {
+    "foxglove.PoseInFrame": _object(timestamp=_TIME, frame_id=_TEXT, pose=_POSE),
+    "foxglove.PosesInFrame": _object(timestamp=_TIME, frame_id=_TEXT, poses=_array(_POSE)),
+    "foxglove.LaserScan": _object(
+        timestamp=_TIME,
+        frame_id=_TEXT,
+        pose=_POSE,
+        start_angle=_NUMBER,
+        end_angle=_NUMBER,
+        ranges=_array(_NUMBER),
+        intensities=_array(_NUMBER),
+    ),
+    "foxglove.Grid": _object(
+        timestamp=_TIME,
+        frame_id=_TEXT,
+        pose=_POSE,
+        column_count=_INTEGER,
+        cell_size=_object(x=_NUMBER, y=_NUMBER),
+        row_stride=_INTEGER,
+        cell_stride=_INTEGER,
+        fields=_array(_object(name=_TEXT, offset=_INTEGER, type=_INTEGER)),
+        data={"type": "string", "contentEncoding": "base64"},
+    ),
+    "foxglove.Log": _object(
+        timestamp=_TIME, level=_INTEGER, message=_TEXT, name=_TEXT, file=_TEXT, line=_INTEGER
+    ),
+    "explore_bt.Run": _object(
+        mission=_TEXT,
+        mission_text=_TEXT,
+        mission_sha256=_TEXT,
+        seed=_INTEGER,
+        version=_TEXT,
+        footprint_radius_m=_ANY,
+        trees=_ANY | {"additionalProperties": _array(_NODE)},
+    ),
+    "explore_bt.Tree": _object(timestamp=_TIME, tick=_INTEGER, key_frame=_FLAG, nodes=_array(_NODE_STATE)),
+    "explore_bt.Blackboard": _object(timestamp=_TIME, key_frame=_FLAG, set=_ANY, removed=_array(_TEXT)),
+    "explore_bt.Gate": _object(timestamp=_TIME, braking=_FLAG, reason=_TEXT),
+    "explore_bt.State": _object(
+        timestamp=_TIME,
+        speed_mps=_NUMBER,
+        turn_rate_rps=_NUMBER,
+        health=_TEXT,
+        health_reason=_TEXT,
+        distance_m=_NUMBER,
+        coverage=_MAYBE,
+        contacts=_MAYBE,
+        clearance_m=_MAYBE,
+        min_clearance_m=_MAYBE,
+        mean_clearance_m=_MAYBE,
+        ate_rmse_m=_MAYBE,
+        distance_to_home_m=_NUMBER,
+    ),
+    "explore_bt.Result": _ANY,
+}
+
+
+def schema_text(name: str) -> bytes:
+    """The JSON Schema of that name."""
+    return json.dumps({"title": name, **_SCHEMAS[name]}, separators=(",", ":")).encode()

@@ -1,0 +1,128 @@
+"""One run of a mission, from the checked model to the files it leaves."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from explore_bt.files import write_whole
+from explore_bt.interfaces import Event, Exporter, RobotProduct, RunInfo, Sink
+from explore_bt.mission import Mission
+from explore_bt.plugin import Registry
+from explore_bt.runtime.observers import Observers
+from explore_bt.runtime.robot import Robot
+from explore_bt.runtime.runner import Runner
+from explore_bt.runtime.stop_flag import StopFlag
+from explore_bt.types import Outcome, Result
+from explore_bt.version import __version__
+
+__all__ = ["run_mission"]
+
+LEFT_OPEN_KEY = "left_open"
+"""Blackboard entry in which a tree lists what it could not explore, one sentence each."""
+
+
+def run_mission(
+    mission: Mission,
+    *,
+    registry: Registry,
+    out: Path,
+    seed: int,
+    sinks: Sequence[Sink],
+    stop: StopFlag,
+) -> Result:
+    """Run a mission to its end and leave its results in ``out``.
+
+    Args:
+        mission: as loaded and checked.
+        registry: where the exporters come from.
+        out: folder for the results; made once every robot is ready, so that wrong input leaves nothing.
+        seed: of every random draw in the run.
+        sinks: observers, in the order they are called.
+        stop: raised by anyone who wants the robots to stop.
+
+    Returns:
+        What ``result.json`` says.
+
+    Raises:
+        UserError: the mission asks for something that cannot be had; nothing was written.
+    """
+    began_s = time.perf_counter()  # wall time is a figure of the report, never an input of the run
+    observers = Observers(sinks)
+    robots = [Robot(spec, mission, seed, stop, observers.event) for spec in mission.robots]
+    try:
+        for robot in robots:
+            robot.setup()
+        out.mkdir(parents=True, exist_ok=True)
+        observers.open(_run_info(mission, robots, seed, out))
+        runner = Runner(mission, robots, observers, stop)
+        try:
+            runner.run()
+        except BaseException as error:
+            observers.event(Event(runner.now_s, "", "error", "mission", repr(error)))
+            observers.close(None)
+            raise
+        result = _result(mission, robots, runner, seed, time.perf_counter() - began_s)
+        _export(registry, robots, result, out)
+        observers.close(result)
+        write_whole(out / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
+        return result
+    finally:
+        for robot in robots:
+            robot.close()
+
+
+def _run_info(mission: Mission, robots: Sequence[Robot], seed: int, out: Path) -> RunInfo:
+    return RunInfo(
+        mission=mission.name,
+        mission_text=mission.text,
+        mission_sha256=mission.sha256,
+        seed=seed,
+        version=__version__,
+        folder=out,
+        trees={robot.name: robot.tree.infos for robot in robots},
+        footprint_radius_m={robot.name: robot.footprint_radius_m for robot in robots},
+    )
+
+
+def _result(
+    mission: Mission, robots: Sequence[Robot], runner: Runner, seed: int, wall_time_s: float
+) -> Result:
+    """Figures of the first robot; a fleet's are joined where fleets are."""
+    robot = robots[0]
+    score = robot.scores.score()
+    left_open = robot.blackboard.get(LEFT_OPEN_KEY, ())
+    return Result(
+        outcome=runner.outcome,
+        reason=runner.reason,
+        mission=mission.name,
+        coverage=score.coverage,
+        contacts=score.contacts,
+        ate_rmse_m=robot.scores.ate_rmse_m(robot.slam.trajectory()),
+        path_length_m=score.distance_m,
+        mission_time_s=runner.now_s,
+        wall_time_s=wall_time_s,
+        min_clearance_m=score.min_clearance_m,
+        mean_clearance_m=score.mean_clearance_m,
+        distance_to_home_m=score.distance_to_home_m,
+        seed=seed,
+        mission_sha256=mission.sha256,
+        version=__version__,
+        left_open=tuple(str(sentence) for sentence in left_open) if isinstance(left_open, tuple) else (),
+        slam=dict(robot.slam.figures()),
+    )
+
+
+def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Path) -> None:
+    """Every exporter for every robot; one robot writes into the folder itself, several into their own."""
+    for robot in robots:
+        folder = out if len(robots) == 1 else out / robot.name
+        folder.mkdir(exist_ok=True)
+        product = RobotProduct(
+            robot.name, robot.slam.grid(), robot.slam.trajectory(), robot.scores.true_trajectory(), result
+        )
+        for name in registry.names("exporter"):
+            make: type[Exporter] = registry.get("exporter", name)
+            make(make.Options()).export(product, folder)

@@ -1,0 +1,54 @@
+"""Sinks, called one by one: the one that fails is cut off, the mission goes on."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+
+from explore_bt.interfaces import Event, RunInfo, Sink, TickSnapshot
+from explore_bt.types import Result
+
+__all__ = ["Observers"]
+
+PATIENCE = 5
+"""Failures in a row after which a sink is cut off."""
+
+_log = logging.getLogger("explore_bt")
+
+
+class Observers:
+    """All sinks of a run behind one door."""
+
+    def __init__(self, sinks: Sequence[Sink]) -> None:
+        self._failures = dict.fromkeys(sinks, 0)
+
+    def open(self, run: RunInfo) -> None:
+        """The run begins; a sink that cannot open is cut off at once."""
+        for sink in list(self._failures):
+            self._call(sink, lambda sink=sink: sink.open(run), patience=1)
+
+    def tick(self, tick: TickSnapshot) -> None:
+        """A tick has ended."""
+        for sink in list(self._failures):
+            self._call(sink, lambda sink=sink: sink.on_tick(tick))
+
+    def event(self, event: Event) -> None:
+        """Something happened."""
+        for sink in list(self._failures):
+            self._call(sink, lambda sink=sink: sink.on_event(event))
+
+    def close(self, result: Result | None) -> None:
+        """The run is over."""
+        for sink in list(self._failures):
+            self._call(sink, lambda sink=sink: sink.close(result))
+
+    def _call(self, sink: Sink, call: Callable[[], None], patience: int = PATIENCE) -> None:
+        try:
+            call()
+        except Exception:
+            self._failures[sink] += 1
+            if self._failures[sink] >= patience:
+                del self._failures[sink]
+                _log.exception("sink %s is cut off after %d failures in a row", sink.name, patience)
+        else:
+            self._failures[sink] = 0

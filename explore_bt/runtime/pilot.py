@@ -1,0 +1,108 @@
+"""The way from a decision to the wheels: controller, safety gate, driver."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver
+from explore_bt.runtime.pose_predictor import PosePredictor
+from explore_bt.runtime.safety_gate import SafetyGate
+from explore_bt.types import Estimate, Health, MotionState, OccupancyGrid, Path, Scan2D, Twist2
+
+__all__ = ["Pilot"]
+
+STALE_SCAN_S = 0.5
+"""A scan older than this is no ground to drive on: five missed sweeps of a 10 Hz lidar."""
+
+_REST = 1e-4
+
+
+class Pilot:
+    """Runs once per control period; every command passes the gate."""
+
+    def __init__(self, controller: Controller, gate: SafetyGate, driver: Driver) -> None:
+        self._controller = controller
+        self._gate = gate
+        self._driver = driver
+        self._predictor = PosePredictor()
+        self.motion = MotionState()
+        self.path: Path | None = None
+        self.gate_reason = ""
+        self._output = ControlOutput(Twist2(), ControlStatus.IDLE)
+        self._blocked_since_s: float | None = None
+        self._now_s = 0.0
+
+    @property
+    def output(self) -> ControlOutput:
+        """The controller's last word on the present path."""
+        return self._output
+
+    @property
+    def blocked_s(self) -> float:
+        """For how long the gate has been braking without a break, seconds."""
+        return 0.0 if self._blocked_since_s is None else self._now_s - self._blocked_since_s
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the last command was to stand still."""
+        twist = self.motion.twist
+        return abs(twist.linear_mps) < _REST and abs(twist.angular_rps) < _REST
+
+    def follow(self, path: Path) -> None:
+        """Drive along ``path`` from the next control step on."""
+        self.path = path
+        self._output = ControlOutput(self._output.twist, ControlStatus.RUNNING)
+        self._blocked_since_s = None
+        self._controller.follow(path)
+
+    def hold(self) -> None:
+        """Come to rest under the limits."""
+        self.path = None
+        self._controller.hold()
+
+    def see(self, points: NDArray[np.float64], grid: OccupancyGrid, estimate: Estimate) -> None:
+        """Show the newest scan (returns, ``map`` frame) and map to the gate."""
+        self._gate.see(points, grid, estimate.T_map_base)
+
+    def predict(self, estimate: Estimate, now_s: float) -> Estimate:
+        """The estimate carried forward to now along the commands sent since its stamp."""
+        return self._predictor.predict(estimate, now_s)
+
+    def step(self, estimate: Estimate, scan: Scan2D | None, now_s: float, dt_s: float) -> None:
+        """One control period: ask the controller, pass its wish through the gate, send the outcome."""
+        self._now_s = now_s
+        now = self.predict(estimate, now_s)
+        self._output = self._controller.step(now, scan, self.motion, dt_s)
+        fault = _unfit_to_drive(estimate, scan, now_s)
+        if fault:
+            following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
+        else:
+            decision = self._gate.decide(self._output.twist, now.T_map_base, self.motion, dt_s)
+            following, self.gate_reason = decision.motion, decision.reason
+        if not self.gate_reason:
+            self._blocked_since_s = None
+        elif self._blocked_since_s is None:
+            self._blocked_since_s = now_s
+        self._send(following, now_s)
+
+    def brake(self, reason: str, now_s: float, dt_s: float) -> None:
+        """One control period of a controlled stop, without asking the controller."""
+        self._now_s = now_s
+        self.gate_reason = reason
+        self._send(self._gate.brake(self.motion, dt_s), now_s)
+
+    def _send(self, following: MotionState, now_s: float) -> None:
+        self._predictor.sent(now_s, self.motion, following)
+        self.motion = following
+        self._driver.command(following.twist)
+
+
+def _unfit_to_drive(estimate: Estimate, scan: Scan2D | None, now_s: float) -> str:
+    if scan is None:
+        return "no scan yet"
+    if (age_s := now_s - scan.stamp_s) > STALE_SCAN_S:
+        return f"the newest scan is {age_s:.1f} s old"
+    if estimate.health is Health.LOST:
+        return f"SLAM is lost: {estimate.reason}"
+    return ""

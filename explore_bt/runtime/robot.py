@@ -1,0 +1,244 @@
+"""One robot's stack: driver, SLAM, planner, controller, safety gate, and the tree that decides."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
+from explore_bt.interfaces import Event, MapView, NodeState, RobotContext, RobotSnapshot
+from explore_bt.mission import Mission, RobotSpec, build_tree
+from explore_bt.runtime.pilot import Pilot
+from explore_bt.runtime.safety_gate import SafetyGate
+from explore_bt.runtime.scorekeeper import Scorekeeper
+from explore_bt.runtime.stop_flag import StopFlag
+from explore_bt.tree import Blackboard, PortUnsetError, Status
+from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D
+
+__all__ = ["Robot"]
+
+DEFAULT_LIDAR_RANGE_M = 5.0
+
+
+class Robot:
+    """Owns its plugins and serves the leaves of its tree (see ``interfaces.RobotServices``)."""
+
+    def __init__(
+        self, spec: RobotSpec, mission: Mission, seed: int, stop: StopFlag, tell: Callable[[Event], None]
+    ) -> None:
+        """Construct every plugin; nothing is opened yet."""
+        self.name = spec.name
+        self._spec = spec
+        self._mission = mission
+        self._seed = seed
+        self._stop = stop
+        self._tell = tell
+        self.driver = spec.driver.make()
+        self.slam = spec.slam.make()
+        self._planner = spec.planner.make()
+        self._controller = spec.controller.make()
+        self.blackboard = Blackboard()
+        self.tree = build_tree(spec.tree, self, self.blackboard)
+        self._scan: Scan2D | None = None
+        self._view: MapView | None = None
+        self._slam_fault = ""
+        self._health = Health.OK
+        self._gate_reason = ""
+
+    def setup(self) -> None:
+        """Open the driver, warm everything up.
+
+        Raises:
+            UserError: whatever the mission asked for cannot be had.
+        """
+        context = RobotContext(robot=self.name, seed=self._seed, start=self._spec.start)
+        self.driver.setup(context)
+        limits = self._mission.limits.apply(self.driver.limits)
+        context = replace(
+            context,
+            start=self.driver.start,
+            footprint_radius_m=self.driver.footprint_radius_m,
+            limits=limits,
+            truth=self.driver.truth(),
+        )
+        self.home = self.driver.start
+        self.slam.setup(context)
+        self._planner.setup(context)
+        self._controller.setup(context)
+        gate = SafetyGate(self.driver.footprint_radius_m, limits)
+        self.pilot = Pilot(self._controller, gate, self.driver)
+        self.scores = Scorekeeper(self.home, context.truth)
+
+    # --- what leaves may ask for -------------------------------------------------------------------
+
+    @property
+    def footprint_radius_m(self) -> float:
+        """Radius of the circular footprint."""
+        return self.driver.footprint_radius_m
+
+    @property
+    def lidar_range_m(self) -> float:
+        """How far the lidar sees."""
+        return self._scan.range_max_m if self._scan else DEFAULT_LIDAR_RANGE_M
+
+    @property
+    def stop_requested(self) -> bool:
+        """The paper's ``stop_exploration``."""
+        return self._stop.is_raised
+
+    @property
+    def distance_m(self) -> float:
+        """Driven since the start, metres."""
+        return self.scores.score().distance_m
+
+    def now_s(self) -> float:
+        """Mission time, seconds."""
+        return self.driver.clock.now_s()
+
+    def estimate(self) -> Estimate:
+        """The newest pose, ``lost`` if the SLAM plugin itself broke down."""
+        estimate = self.slam.estimate()
+        if self._slam_fault:
+            return replace(estimate, health=Health.LOST, reason=self._slam_fault)
+        return estimate
+
+    def view(self) -> MapView:
+        """The newest map."""
+        grid = self.slam.grid()
+        if self._view is None or self._view.grid is not grid:
+            self._view = MapView(grid)
+        return self._view
+
+    def scan(self) -> Scan2D | None:
+        """The newest scan, None before the first."""
+        return self._scan
+
+    def plan(self, goal: Pose2) -> Path:
+        """A path from where the robot is now.
+
+        Raises:
+            PlanningFailure: the planner's typed no.
+            ComponentFailure: the planner broke down.
+        """
+        here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
+        try:
+            return self._planner.plan(
+                self.view().grid, here, goal, self.footprint_radius_m, lambda: self._stop.is_raised
+            )
+        except (PlanningFailure, UserError):
+            raise
+        except Exception as error:
+            failure = ComponentFailure(f"planner {self._planner.name}", repr(error))
+            self.tell("error", failure.component, failure.reason)
+            raise failure from error
+
+    # --- what the runner calls, in this order, every control period -----------------------------------
+
+    def sense(self) -> None:
+        """Take in what the driver measured since the last time."""
+        measurements = self._guarded("driver", self.driver.read, ())
+        for measurement in measurements:
+            if self._slam_fault:
+                break
+            self._take(measurement)
+        if any(isinstance(measurement, Scan2D) for measurement in measurements):
+            self._show_gate()
+        self._watch_health()
+
+    def act(self, now_s: float, dt_s: float) -> None:
+        """One control period; a controller that breaks down is braked for."""
+        try:
+            self.pilot.step(self.estimate(), self._scan, now_s, dt_s)
+        except Exception as error:  # any plugin's failure ends in a controlled stop, never in a crash
+            self.tell("error", f"controller {self._controller.name}", repr(error))
+            self.pilot.brake(f"controller {self._controller.name} failed: {error!r}", now_s, dt_s)
+        self._watch_gate()
+        pose = self.pilot.predict(self.estimate(), now_s).T_map_base
+        self.scores.control_step(pose, self.pilot.motion, now_s, dt_s)
+
+    def decide(self) -> Status:
+        """Tick the tree once."""
+        try:
+            self.tree.root.tick_once()
+        except PortUnsetError as error:
+            self.tell("error", "tree", str(error))
+            self.tree.root.stop(Status.FAILURE)
+        return self.tree.root.status
+
+    def rest(self) -> None:
+        """Cut the tree off and come to rest."""
+        if self.tree.root.status is Status.RUNNING:
+            self.tree.root.stop(Status.INVALID)
+        self.pilot.hold()
+
+    def close(self) -> None:
+        """Stop the body and let go of it."""
+        self.driver.close()
+
+    # --- for observers ------------------------------------------------------------------------------
+
+    def snapshot(self) -> RobotSnapshot:
+        """What observers are shown after a tick."""
+        return RobotSnapshot(
+            robot=self.name,
+            estimate=self.estimate(),
+            grid=self.view().grid,
+            scan=self._scan,
+            path=self.pilot.path,
+            motion=self.pilot.motion,
+            gate_reason=self.pilot.gate_reason,
+            nodes=tuple(
+                NodeState(_status_word(node.status), node.feedback_message) for node in self.tree.nodes
+            ),
+            blackboard=dict(self.blackboard),
+            score=self.scores.score(),
+            true_pose=self.scores.true_pose,
+        )
+
+    def tell(self, level: str, source: str, message: str) -> None:
+        """Pass an event on to the observers."""
+        self._tell(Event(self.now_s(), self.name, level, source, message))
+
+    # --- inside -------------------------------------------------------------------------------------
+
+    def _take(self, measurement: Measurement) -> None:
+        if isinstance(measurement, Scan2D):
+            self._scan = measurement
+        try:
+            self.slam.update(measurement)
+        except Exception as error:  # a SLAM that raises is lost: the gate brakes, the reason is recorded
+            self._slam_fault = f"slam {self.slam.name} failed: {error!r}"
+            self.tell("error", f"slam {self.slam.name}", repr(error))
+
+    def _show_gate(self) -> None:
+        assert self._scan is not None
+        estimate = self.slam.estimate()
+        points = estimate.T_map_base.apply(self._scan.points())
+        self.pilot.see(np.ascontiguousarray(points), self.slam.grid(), estimate)
+
+    def _guarded(
+        self, kind: str, call: Callable[[], Sequence[Measurement]], fallback: Sequence[Measurement]
+    ) -> Sequence[Measurement]:
+        try:
+            return call()
+        except Exception as error:  # silence is handled: a stale scan brakes the robot
+            self.tell("error", f"{kind} {self.driver.name}", repr(error))
+            return fallback
+
+    def _watch_health(self) -> None:
+        estimate = self.estimate()
+        if estimate.health is not self._health:
+            level = "info" if estimate.health is Health.OK else "warning"
+            self.tell(level, "slam", f"{self._health} → {estimate.health} {estimate.reason}".strip())
+            self._health = estimate.health
+
+    def _watch_gate(self) -> None:
+        if self.pilot.gate_reason and not self._gate_reason:
+            self.tell("warning", "safety gate", self.pilot.gate_reason)
+        self._gate_reason = self.pilot.gate_reason
+
+
+def _status_word(status: Status) -> str:
+    return "idle" if status is Status.INVALID else str(status.value).lower()

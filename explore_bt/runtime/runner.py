@@ -1,0 +1,144 @@
+"""The tick loop: time, senses, decisions, motion, observers, in this order."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Sequence
+
+from explore_bt.interfaces import Event, TickSnapshot
+from explore_bt.mission import Mission
+from explore_bt.runtime.observers import Observers
+from explore_bt.runtime.robot import Robot
+from explore_bt.runtime.stop_flag import StopFlag
+from explore_bt.tree import Status
+from explore_bt.types import Outcome
+
+__all__ = ["Runner"]
+
+FIRST_SCAN_TIMEOUT_S = 5.0
+REST_TIMEOUT_S = 5.0
+REASON_KEY = "reason"
+"""Blackboard entry in which a tree may say why it ended."""
+
+
+class _Phase(enum.Enum):
+    """Waiting for the first scan, exploring, coming to rest."""
+
+    WAKING = enum.auto()
+    DECIDING = enum.auto()
+    RESTING = enum.auto()
+    OVER = enum.auto()
+
+
+class Runner:
+    """Drives all robots of a mission in lock-step until the trees, the user or a budget end it."""
+
+    def __init__(
+        self, mission: Mission, robots: Sequence[Robot], observers: Observers, stop: StopFlag
+    ) -> None:
+        self._mission = mission
+        self._robots = robots
+        self._observers = observers
+        self._stop = stop
+        self._dt_s = 1.0 / mission.control_rate_hz
+        self._steps_per_tick = round(mission.control_rate_hz / mission.tree_rate_hz)
+        self._phase = _Phase.WAKING
+        self._rest_until_s = 0.0
+        self._tick = 0
+        self.now_s = 0.0
+        self.outcome = Outcome.FAILED
+        self.reason = "the mission never began"
+
+    def run(self) -> None:
+        """Until everything stands still; ``outcome`` and ``reason`` then tell why."""
+        step = 0
+        while self._phase is not _Phase.OVER:
+            step += 1
+            self._advance(step * self._dt_s)
+            for robot in self._robots:
+                robot.sense()
+            if step % self._steps_per_tick == 0:
+                self._decide()
+            for robot in self._robots:
+                robot.act(self.now_s, self._dt_s)
+            if step % self._steps_per_tick == 0:
+                self._show()
+
+    def _advance(self, time_s: float) -> None:
+        for robot in self._robots:
+            robot.driver.clock.wait_until(time_s)
+        self.now_s = time_s
+
+    def _decide(self) -> None:
+        if self._phase is _Phase.WAKING:
+            self._wake()
+        elif self._phase is _Phase.DECIDING:
+            self._tick_trees()
+        elif all(robot.pilot.is_at_rest for robot in self._robots) or self.now_s > self._rest_until_s:
+            self._phase = _Phase.OVER
+
+    def _wake(self) -> None:
+        silent = [robot for robot in self._robots if robot.scan() is None]
+        if not silent:
+            self._phase = _Phase.DECIDING
+        elif self._stop.is_raised:
+            self._end(Outcome.STOPPED, self._stop.reason)
+        elif self.now_s > FIRST_SCAN_TIMEOUT_S:
+            robot = silent[0]
+            self._end(
+                Outcome.FAILED,
+                f"robot {robot.name}: driver {robot.driver.name} gave no scan in {FIRST_SCAN_TIMEOUT_S:.0f} s",
+            )
+
+    def _tick_trees(self) -> None:
+        if self._stop.is_raised:
+            self._end(Outcome.STOPPED, self._stop.reason)
+            return
+        if spent := self._budget_spent():
+            self._end(Outcome.BUDGET, spent)
+            return
+        statuses = [robot.decide() for robot in self._robots]
+        if any(status is Status.RUNNING for status in statuses):
+            return
+        failed = next((r for r, s in zip(self._robots, statuses, strict=True) if s is not Status.SUCCESS), None)
+        if failed is None:
+            self._end(Outcome.EXPLORED, _last_words(self._robots[0], Status.SUCCESS))
+        else:
+            self._end(Outcome.FAILED, _last_words(failed, Status.FAILURE))
+
+    def _budget_spent(self) -> str:
+        limits = self._mission.limits
+        if limits.time_s is not None and self.now_s >= limits.time_s:
+            return f"the time budget of {limits.time_s:.0f} s is spent"
+        for robot in self._robots:
+            if limits.distance_m is not None and robot.distance_m >= limits.distance_m:
+                return f"robot {robot.name}: the distance budget of {limits.distance_m:.0f} m is spent"
+        return ""
+
+    def _end(self, outcome: Outcome, reason: str) -> None:
+        self.outcome, self.reason = outcome, reason
+        self._phase = _Phase.RESTING
+        self._rest_until_s = self.now_s + REST_TIMEOUT_S
+        self._observers.event(Event(self.now_s, "", "info", "mission", f"{outcome}: {reason}"))
+        for robot in self._robots:
+            robot.rest()
+
+    def _show(self) -> None:
+        final = self._phase is _Phase.OVER
+        for robot in self._robots:
+            robot.scores.map_step(robot.view().grid, self.now_s, final=final)
+        snapshots = tuple(robot.snapshot() for robot in self._robots)
+        self._observers.tick(TickSnapshot(self._tick, self.now_s, snapshots))
+        self._tick += 1
+
+
+def _last_words(robot: Robot, status: Status) -> str:
+    """What the tree wrote as its reason, else the last leaf that ended like it and said something."""
+    if REASON_KEY in robot.blackboard:
+        return str(robot.blackboard[REASON_KEY])
+    spoken = [
+        node for node in robot.tree.nodes if not node.children and node.status is status and node.feedback_message
+    ]
+    if not spoken:
+        return f"the tree of robot {robot.name} ended with {status.value}"
+    return f"{spoken[-1].name}: {spoken[-1].feedback_message}"

@@ -1,0 +1,257 @@
+"""The safety gate: no command leaves from which a checked stop does not exist.
+
+Before each command the gate rolls the robot forward: the control period under the wanted twist, then
+the jerk-limited brake to rest, turning included. Every place on that way must be free for the footprint,
+in the newest scan and in the newest map, where unknown counts as obstacle. If one is not, the brake that
+was checked the last time goes out instead. So by induction the robot can always stop in free space.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from explore_bt.exploration.clearance import clearance_field
+from explore_bt.runtime.brake import brake_duration_s, brake_velocity
+from explore_bt.types import MotionLimits, MotionState, OccupancyGrid, Pose2, Twist2
+
+__all__ = ["GateDecision", "SafetyGate"]
+
+GRID_MARGIN_M = 0.0
+"""Beyond the footprint on the grid: its clearance already counts every obstacle as filling its cell."""
+SCAN_MARGIN_M = 0.01
+"""Beyond the footprint against scan points: one standard deviation of a usual lidar's range noise."""
+LOOK_AHEAD_M = 1.5
+"""Half width of the map window looked at: more than any stop from 1 m/s needs, plus the footprint."""
+INSIDE_SHARE = 0.6
+"""Share of the needed clearance below which the robot counts as standing inside an obstacle."""
+SAMPLE_S = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class GateDecision:
+    """The twist to send, and why it is not the one that was asked for (empty if it is)."""
+
+    motion: MotionState
+    reason: str
+
+
+@dataclass(slots=True)
+class _Brake:
+    """A checked way to rest: the state it starts from and the time driven along it."""
+
+    start: MotionState
+    elapsed_s: float = 0.0
+
+
+class SafetyGate:
+    """Checks commands for one robot and brakes for it when it must."""
+
+    def __init__(self, footprint_radius_m: float, limits: MotionLimits) -> None:
+        self._radius_m = footprint_radius_m
+        self._limits = limits
+        self._brake = _Brake(MotionState())
+        self._window = _ClearanceWindow()
+        self._points = np.empty((0, 2))
+
+    def see(self, points: NDArray[np.float64], grid: OccupancyGrid, near: Pose2) -> None:
+        """Take the newest scan and map.
+
+        Args:
+            points: (N, 2) float64, metres, ``map`` frame: the scan's returns.
+            grid: the newest map.
+            near: where the robot is; the map is looked at around it.
+        """
+        self._points = points
+        self._window.cut(grid, near)
+
+    def decide(self, wanted: Twist2, pose: Pose2, motion: MotionState, dt_s: float) -> GateDecision:
+        """Pass ``wanted`` on, or go on along the brake that was checked last.
+
+        Args:
+            wanted: the controller's twist for the coming period.
+            pose: the robot's pose now, ``map`` frame.
+            motion: what was sent last.
+            dt_s: the control period.
+        """
+        following = _state_after(wanted, motion, dt_s)
+        fault = self._fault_on_the_way(following, pose, motion, dt_s)
+        if not fault:
+            self._brake = _Brake(following)
+            return GateDecision(following, "")
+        return GateDecision(self._next_of_brake(motion, dt_s), fault)
+
+    def brake(self, motion: MotionState, dt_s: float) -> MotionState:
+        """The next state of a controlled stop, whatever the controller wants."""
+        return self._next_of_brake(motion, dt_s)
+
+    def _next_of_brake(self, motion: MotionState, dt_s: float) -> MotionState:
+        brake = self._brake
+        brake.elapsed_s += dt_s
+        times = np.array([brake.elapsed_s])
+        linear, angular = _brake_velocities(brake.start, self._limits, times)
+        return _state_after(Twist2(float(linear[0]), float(angular[0])), motion, dt_s)
+
+    def _fault_on_the_way(
+        self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float
+    ) -> str:
+        ahead = self._way_to_rest(following, pose, motion, dt_s)
+        if not np.any(ahead - ahead[0]):
+            return ""  # a disc turning on the spot touches nothing that it does not touch already
+        on_grid = self._window.clearance_m(ahead)
+        to_points = _nearest_point_m(ahead, self._points)
+        return _shortfall(on_grid, self._radius_m + GRID_MARGIN_M, "obstacle or unknown space in the map") or (
+            _shortfall(to_points, self._radius_m + SCAN_MARGIN_M, "obstacle in the scan")
+        )
+
+    def _way_to_rest(
+        self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float
+    ) -> NDArray[np.float64]:
+        """(N, 2) float64 positions from here to rest; the first is here."""
+        limits = self._limits
+        duration = max(
+            brake_duration_s(
+                following.twist.linear_mps,
+                following.linear_acceleration_mps2,
+                limits.acceleration_mps2,
+                limits.jerk_mps3,
+            ),
+            brake_duration_s(
+                following.twist.angular_rps,
+                following.angular_acceleration_rps2,
+                limits.turn_acceleration_rps2,
+                limits.turn_jerk_rps3,
+            ),
+        )
+        times = np.arange(0.0, duration + SAMPLE_S, SAMPLE_S)
+        linear, angular = _brake_velocities(following, limits, times)
+        return _roll_forward(
+            pose.x, pose.y, pose.yaw_rad, motion.twist.linear_mps, motion.twist.angular_rps, linear, angular, dt_s
+        )
+
+
+def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str) -> str:
+    """Why a way with these clearances, the first of them here and now, must not be driven.
+
+    Where it is already tighter than needed the way may lead out, never closer; where the robot seems to
+    stand inside an obstacle nothing can be told, and it stays.
+    """
+    here, worst = float(clearance_m[0]), float(clearance_m.min())
+    if worst >= needed_m:
+        return ""
+    if here < INSIDE_SHARE * needed_m:
+        return f"the robot seems to stand {here:.2f} m from an {obstacle}, needs {needed_m:.2f} m"
+    if worst < min(needed_m, here):
+        return f"the stop would end {worst:.2f} m from an {obstacle}, needs {needed_m:.2f} m"
+    return ""
+
+
+def _state_after(twist: Twist2, motion: MotionState, dt_s: float) -> MotionState:
+    return MotionState(
+        twist,
+        (twist.linear_mps - motion.twist.linear_mps) / dt_s,
+        (twist.angular_rps - motion.twist.angular_rps) / dt_s,
+    )
+
+
+def _brake_velocities(
+    start: MotionState, limits: MotionLimits, times_s: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    linear = brake_velocity(
+        start.twist.linear_mps,
+        start.linear_acceleration_mps2,
+        limits.acceleration_mps2,
+        limits.jerk_mps3,
+        times_s,
+    )
+    angular = brake_velocity(
+        start.twist.angular_rps,
+        start.angular_acceleration_rps2,
+        limits.turn_acceleration_rps2,
+        limits.turn_jerk_rps3,
+        times_s,
+    )
+    return linear, angular
+
+
+class _ClearanceWindow:
+    """Clearance of the map around the robot; outside the window nothing is known, so nothing is free."""
+
+    def __init__(self) -> None:
+        self._field = np.zeros((1, 1), dtype=np.float32)
+        self._origin_xy = (0.0, 0.0)
+        self._resolution_m = 1.0
+
+    def cut(self, grid: OccupancyGrid, near: Pose2) -> None:
+        row, col = grid.cell_of(near.x, near.y)
+        reach = int(LOOK_AHEAD_M / grid.resolution_m)
+        row0, col0 = max(0, row - reach), max(0, col - reach)
+        cells = grid.cells[row0 : max(row0, row + reach + 1), col0 : max(col0, col + reach + 1)]
+        if cells.size == 0:
+            self._field = np.zeros((1, 1), dtype=np.float32)
+            return
+        resolution = grid.resolution_m
+        origin = (grid.origin_xy[0] + col0 * resolution, grid.origin_xy[1] + row0 * resolution)
+        self._field = clearance_field(OccupancyGrid(cells, resolution, origin))
+        self._origin_xy = origin
+        self._resolution_m = resolution
+
+    def clearance_m(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(N,) metres at (N, 2) positions."""
+        return _sample(self._field, *self._origin_xy, self._resolution_m, positions)
+
+
+@njit(cache=True)
+def _sample(
+    field: NDArray[np.float32], x0: float, y0: float, resolution: float, positions: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    out = np.zeros(positions.shape[0])
+    for i in range(positions.shape[0]):
+        col = int(np.floor((positions[i, 0] - x0) / resolution))
+        row = int(np.floor((positions[i, 1] - y0) / resolution))
+        if 0 <= row < field.shape[0] and 0 <= col < field.shape[1]:
+            out[i] = field[row, col]
+    return out
+
+
+@njit(cache=True)
+def _nearest_point_m(
+    positions: NDArray[np.float64], points: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    out = np.full(positions.shape[0], np.inf)
+    for i in range(positions.shape[0]):
+        for k in range(points.shape[0]):
+            dx = positions[i, 0] - points[k, 0]
+            dy = positions[i, 1] - points[k, 1]
+            out[i] = min(out[i], dx * dx + dy * dy)
+        out[i] = np.sqrt(out[i])
+    return out
+
+
+@njit(cache=True)
+def _roll_forward(
+    x: float,
+    y: float,
+    yaw: float,
+    v: float,
+    w: float,
+    linear: NDArray[np.float64],
+    angular: NDArray[np.float64],
+    dt_s: float,
+) -> NDArray[np.float64]:
+    """Positions here, after the period ``dt_s``, then every ``SAMPLE_S`` of the brake."""
+    out = np.empty((linear.shape[0] + 1, 2))
+    out[0, 0], out[0, 1] = x, y
+    step = dt_s
+    for i in range(linear.shape[0]):
+        mean_v, mean_w = 0.5 * (v + linear[i]), 0.5 * (w + angular[i])
+        x += mean_v * step * np.cos(yaw + 0.5 * mean_w * step)
+        y += mean_v * step * np.sin(yaw + 0.5 * mean_w * step)
+        yaw += mean_w * step
+        v, w = linear[i], angular[i]
+        out[i + 1, 0], out[i + 1, 1] = x, y
+        step = SAMPLE_S
+    return out

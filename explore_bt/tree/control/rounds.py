@@ -1,0 +1,66 @@
+"""The same child again: repeat while it succeeds, retry while it fails."""
+
+from __future__ import annotations
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from explore_bt.tree.control.base import Decorator, Work, ticked
+
+__all__ = ["Repeat", "Retry"]
+
+
+class Repeat(Decorator):
+    """Runs its child until it has succeeded ``times`` times; fails when the child fails.
+
+    With a number, the next round begins within the same tick, as in BehaviorTree.CPP. With None it goes
+    on for ever and returns ``RUNNING`` after each round: a child that succeeds at once is ticked once per
+    tick, so the tick always ends.
+    """
+
+    def __init__(self, name: str, child: Behaviour, times: int | None) -> None:
+        super().__init__(name, child)
+        self._times = times
+
+    def initialise(self) -> None:
+        """No round is done."""
+        self._done = 0
+
+    def work(self) -> Work:
+        """Tick the child, round after round."""
+        while self._times is None or self._done < self._times:
+            status = yield from ticked(self.child)
+            if status is not Status.SUCCESS:
+                return status
+            self._done += 1
+            total = "" if self._times is None else f" of {self._times}"
+            self.feedback_message = f"{self._done}{total} rounds done"
+            if self._times is None:
+                return Status.RUNNING
+        return Status.SUCCESS
+
+
+class Retry(Decorator):
+    """Runs a failing child again, up to ``retries`` more times; succeeds when the child does.
+
+    The next attempt begins within the same tick. ``retry: 2`` is BehaviorTree.CPP's
+    ``RetryUntilSuccessful num_attempts=3``.
+    """
+
+    def __init__(self, name: str, child: Behaviour, retries: int) -> None:
+        super().__init__(name, child)
+        self._retries = retries
+
+    def initialise(self) -> None:
+        """No attempt has failed."""
+        self._failed = 0
+
+    def work(self) -> Work:
+        """Tick the child, attempt after attempt."""
+        while self._failed <= self._retries:
+            status = yield from ticked(self.child)
+            if status is not Status.FAILURE:
+                return status
+            self._failed += 1
+            self.feedback_message = f"{self._failed} of {self._retries + 1} attempts failed"
+        return Status.FAILURE

@@ -1,0 +1,41 @@
+"""A limit on how long a child may run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from explore_bt.tree.control.base import Decorator, Work, ticked
+
+__all__ = ["Timeout"]
+
+
+class Timeout(Decorator):
+    """Halts its child and fails once ``duration_s`` of mission time have passed since the round began.
+
+    A child whose time is up is not ticked again, as in BehaviorTree.CPP.
+
+    Args:
+        name: shown to people.
+        child: what may take so long.
+        duration_s: seconds of mission time.
+        now_s: the mission's clock; never the wall's, which goes on while a debugger holds the run.
+    """
+
+    def __init__(self, name: str, child: Behaviour, duration_s: float, now_s: Callable[[], float]) -> None:
+        super().__init__(name, child)
+        self._duration_s = duration_s
+        self._now_s = now_s
+
+    def initialise(self) -> None:
+        """The time begins."""
+        self._deadline_s = self._now_s() + self._duration_s
+
+    def work(self) -> Work:
+        """Tick the child while there is time."""
+        if self._now_s() >= self._deadline_s:
+            self.feedback_message = f"gave up after {self._duration_s:g} s"
+            return Status.FAILURE
+        return (yield from ticked(self.child))
