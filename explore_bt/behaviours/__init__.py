@@ -1,1 +1,43 @@
-"""behaviours"""
+"""The leaves that put the exploration's mathematics into a tree, one a file."""
+
+from explore_bt.behaviours.choose_home import ChooseHome
+from explore_bt.behaviours.drive_to import DriveTo
+from explore_bt.behaviours.find_next_heading import FindNextHeading
+from explore_bt.behaviours.find_viewpoint import FindViewpoint
+from explore_bt.behaviours.give_up_goal import GivenUp, GiveUpGoal
+from explore_bt.behaviours.record_waypoint import RecordWaypoint
+from explore_bt.behaviours.reset_half_planes import ResetHalfPlanes
+from explore_bt.behaviours.stop_requested import StopRequested
+from explore_bt.behaviours.turn import Turn
+from explore_bt.behaviours.wait import Wait
+from explore_bt.behaviours.watch_progress import WatchProgress
+
+__all__ = [
+    "LEAVES",
+    "ChooseHome",
+    "DriveTo",
+    "FindNextHeading",
+    "FindViewpoint",
+    "GiveUpGoal",
+    "GivenUp",
+    "RecordWaypoint",
+    "ResetHalfPlanes",
+    "StopRequested",
+    "Turn",
+    "Wait",
+    "WatchProgress",
+]
+
+LEAVES = (
+    ChooseHome,
+    DriveTo,
+    FindNextHeading,
+    FindViewpoint,
+    GiveUpGoal,
+    RecordWaypoint,
+    ResetHalfPlanes,
+    StopRequested,
+    Turn,
+    Wait,
+    WatchProgress,
+)

@@ -12,10 +12,11 @@ __all__ = ["GiveUpGoal", "GivenUp"]
 
 @dataclass(frozen=True, slots=True)
 class GivenUp:
-    """A place (x, y, metres, ``map`` frame) that is not tried again, and why."""
+    """A place that is not tried again, why, and the frontier it was to show; metres, ``map`` frame."""
 
     position: tuple[float, float]
     reason: str
+    looks_at: tuple[float, float] | None = None
 
 
 class GiveUpGoal(Leaf):
@@ -30,6 +31,7 @@ class GiveUpGoal(Leaf):
     def update(self) -> Status:
         """Append to the memory."""
         x, y = self.goal.position
-        self.given_up = (*self.recall("given_up", ()), GivenUp((x, y), self.failure))
+        place = GivenUp((x, y), self.failure, self.goal.looks_at)
+        self.given_up = (*self.recall("given_up", ()), place)
         self.say(f"({x:.1f}, {y:.1f}) is given up: {self.failure}")
         return Status.SUCCESS

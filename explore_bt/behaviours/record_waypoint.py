@@ -22,11 +22,13 @@ class RecordWaypoint(Leaf):
     place: Input[str] = Input(
         Literal["goal", "here"], default="goal", doc="the goal that was driven to, or where the robot stands"
     )
-    goal: Input[Waypoint | None] = Input(Waypoint, default=Key("goal"), doc="the waypoint to record")
+    goal: Input[Waypoint | None] = Input(
+        Waypoint, default=Key("goal"), initial=None, doc="the waypoint to record"
+    )
     visited: Output[tuple[Waypoint, ...]] = Output(
         tuple, default=Key("visited"), doc="all waypoints so far, oldest first"
     )
-    half_planes: Output[HalfPlaneHistory] = Output(
+    history: Output[HalfPlaneHistory] = Output(
         HalfPlaneHistory, default=Key("half_planes"), doc="half-planes since the last reset"
     )
 
@@ -37,8 +39,8 @@ class RecordWaypoint(Leaf):
         waypoint = goal or Waypoint(here, "where the mission began")
         visited = self.recall("visited", ())
         self.visited = (*visited, waypoint)
-        history = self.recall("half_planes", HalfPlaneHistory())
-        self.half_planes = history.push(HalfPlane(waypoint.position, waypoint.heading_rad))
+        history = self.recall("history", HalfPlaneHistory())
+        self.history = history.push(HalfPlane(waypoint.position, waypoint.heading_rad))
         x, y = waypoint.position
         self.say(f"waypoint {len(visited)} at ({x:.1f}, {y:.1f})")
         return Status.SUCCESS

@@ -13,12 +13,12 @@ class ResetHalfPlanes(Leaf):
 
     type_key = "reset_half_planes"
 
-    half_planes: Output[HalfPlaneHistory] = Output(
+    history: Output[HalfPlaneHistory] = Output(
         HalfPlaneHistory, default=Key("half_planes"), doc="the history to empty"
     )
 
     def update(self) -> Status:
         """Write an empty history."""
-        self.half_planes = HalfPlaneHistory()
+        self.history = HalfPlaneHistory()
         self.say("half-planes reset")
         return Status.SUCCESS

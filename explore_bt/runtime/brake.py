@@ -39,8 +39,10 @@ def brake_duration_s(v: float, a: float, a_max: float, j_max: float) -> float:
     """Seconds until velocity and acceleration are zero.
 
     Args:
-        v, a: velocity and acceleration now (linear or angular).
-        a_max, j_max: the limits, > 0. An ``a`` beyond ``a_max`` is brought back first.
+        v: velocity now, m/s or rad/s.
+        a: acceleration now; beyond ``a_max`` it is brought back first.
+        a_max: the largest acceleration, > 0.
+        j_max: the largest jerk, > 0.
     """
     t1, t2, t3, _, _ = _profile(v, a, a_max, j_max)
     return t1 + t2 + t3

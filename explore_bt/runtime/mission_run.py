@@ -8,14 +8,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from explore_bt.files import write_whole
-from explore_bt.interfaces import Event, Exporter, RobotProduct, RunInfo, Sink
+from explore_bt.interfaces import Exporter, RobotProduct, RunInfo, Sink
 from explore_bt.mission import Mission
 from explore_bt.plugin import Registry
 from explore_bt.runtime.observers import Observers
 from explore_bt.runtime.robot import Robot
 from explore_bt.runtime.runner import Runner
 from explore_bt.runtime.stop_flag import StopFlag
-from explore_bt.types import Outcome, Result
+from explore_bt.types import Result
 from explore_bt.version import __version__
 
 __all__ = ["run_mission"]
@@ -60,14 +60,11 @@ def run_mission(
         runner = Runner(mission, robots, observers, stop)
         try:
             runner.run()
-        except BaseException as error:
-            observers.event(Event(runner.now_s, "", "error", "mission", repr(error)))
-            observers.close(None)
-            raise
-        result = _result(mission, robots, runner, seed, time.perf_counter() - began_s)
-        _export(registry, robots, result, out)
-        observers.close(result)
-        write_whole(out / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
+        finally:  # nothing mapped is lost, even if the run breaks down inside
+            result = _result(mission, robots, runner, seed, time.perf_counter() - began_s)
+            _export(registry, robots, result, out)
+            observers.close(result)
+            write_whole(out / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
         return result
     finally:
         for robot in robots:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from explore_bt.interfaces import Event, RunInfo, Sink, TickSnapshot
 from explore_bt.types import Result
@@ -25,22 +26,22 @@ class Observers:
     def open(self, run: RunInfo) -> None:
         """The run begins; a sink that cannot open is cut off at once."""
         for sink in list(self._failures):
-            self._call(sink, lambda sink=sink: sink.open(run), patience=1)
+            self._call(sink, partial(sink.open, run), patience=1)
 
     def tick(self, tick: TickSnapshot) -> None:
         """A tick has ended."""
         for sink in list(self._failures):
-            self._call(sink, lambda sink=sink: sink.on_tick(tick))
+            self._call(sink, partial(sink.on_tick, tick))
 
     def event(self, event: Event) -> None:
         """Something happened."""
         for sink in list(self._failures):
-            self._call(sink, lambda sink=sink: sink.on_event(event))
+            self._call(sink, partial(sink.on_event, event))
 
     def close(self, result: Result | None) -> None:
         """The run is over."""
         for sink in list(self._failures):
-            self._call(sink, lambda sink=sink: sink.close(result))
+            self._call(sink, partial(sink.close, result))
 
     def _call(self, sink: Sink, call: Callable[[], None], patience: int = PATIENCE) -> None:
         try:

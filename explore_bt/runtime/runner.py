@@ -47,7 +47,7 @@ class Runner:
         self._tick = 0
         self.now_s = 0.0
         self.outcome = Outcome.FAILED
-        self.reason = "the mission never began"
+        self.reason = "the run broke down inside explore-bt"
 
     def run(self) -> None:
         """Until everything stands still; ``outcome`` and ``reason`` then tell why."""
@@ -85,10 +85,8 @@ class Runner:
             self._end(Outcome.STOPPED, self._stop.reason)
         elif self.now_s > FIRST_SCAN_TIMEOUT_S:
             robot = silent[0]
-            self._end(
-                Outcome.FAILED,
-                f"robot {robot.name}: driver {robot.driver.name} gave no scan in {FIRST_SCAN_TIMEOUT_S:.0f} s",
-            )
+            silence = f"driver {robot.driver.name} gave no scan in {FIRST_SCAN_TIMEOUT_S:.0f} s"
+            self._end(Outcome.FAILED, f"robot {robot.name}: {silence}")
 
     def _tick_trees(self) -> None:
         if self._stop.is_raised:
@@ -100,11 +98,11 @@ class Runner:
         statuses = [robot.decide() for robot in self._robots]
         if any(status is Status.RUNNING for status in statuses):
             return
-        failed = next((r for r, s in zip(self._robots, statuses, strict=True) if s is not Status.SUCCESS), None)
-        if failed is None:
-            self._end(Outcome.EXPLORED, _last_words(self._robots[0], Status.SUCCESS))
-        else:
-            self._end(Outcome.FAILED, _last_words(failed, Status.FAILURE))
+        for robot, status in zip(self._robots, statuses, strict=True):
+            if status is not Status.SUCCESS:
+                self._end(Outcome.FAILED, _last_words(robot, Status.FAILURE))
+                return
+        self._end(Outcome.EXPLORED, _last_words(self._robots[0], Status.SUCCESS))
 
     def _budget_spent(self) -> str:
         limits = self._mission.limits
@@ -137,7 +135,9 @@ def _last_words(robot: Robot, status: Status) -> str:
     if REASON_KEY in robot.blackboard:
         return str(robot.blackboard[REASON_KEY])
     spoken = [
-        node for node in robot.tree.nodes if not node.children and node.status is status and node.feedback_message
+        node
+        for node in robot.tree.nodes
+        if not node.children and node.status is status and node.feedback_message
     ]
     if not spoken:
         return f"the tree of robot {robot.name} ended with {status.value}"

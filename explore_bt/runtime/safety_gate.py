@@ -95,17 +95,14 @@ class SafetyGate:
         linear, angular = _brake_velocities(brake.start, self._limits, times)
         return _state_after(Twist2(float(linear[0]), float(angular[0])), motion, dt_s)
 
-    def _fault_on_the_way(
-        self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float
-    ) -> str:
+    def _fault_on_the_way(self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float) -> str:
         ahead = self._way_to_rest(following, pose, motion, dt_s)
         if not np.any(ahead - ahead[0]):
             return ""  # a disc turning on the spot touches nothing that it does not touch already
         on_grid = self._window.clearance_m(ahead)
         to_points = _nearest_point_m(ahead, self._points)
-        return _shortfall(on_grid, self._radius_m + GRID_MARGIN_M, "obstacle or unknown space in the map") or (
-            _shortfall(to_points, self._radius_m + SCAN_MARGIN_M, "obstacle in the scan")
-        )
+        in_map = _shortfall(on_grid, self._radius_m + GRID_MARGIN_M, "obstacle or unknown space in the map")
+        return in_map or _shortfall(to_points, self._radius_m + SCAN_MARGIN_M, "obstacle in the scan")
 
     def _way_to_rest(
         self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float
@@ -129,7 +126,14 @@ class SafetyGate:
         times = np.arange(0.0, duration + SAMPLE_S, SAMPLE_S)
         linear, angular = _brake_velocities(following, limits, times)
         return _roll_forward(
-            pose.x, pose.y, pose.yaw_rad, motion.twist.linear_mps, motion.twist.angular_rps, linear, angular, dt_s
+            pose.x,
+            pose.y,
+            pose.yaw_rad,
+            motion.twist.linear_mps,
+            motion.twist.angular_rps,
+            linear,
+            angular,
+            dt_s,
         )
 
 
@@ -218,9 +222,7 @@ def _sample(
 
 
 @njit(cache=True)
-def _nearest_point_m(
-    positions: NDArray[np.float64], points: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _nearest_point_m(positions: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
     out = np.full(positions.shape[0], np.inf)
     for i in range(positions.shape[0]):
         for k in range(points.shape[0]):

@@ -61,14 +61,16 @@ class Scorekeeper:
 
     def score(self) -> Score:
         """The figures now, without the trajectory error."""
-        driven = self._distance_m
+        mean_m = self._clearance_m
+        if self._truth and self._distance_m > 0.0:
+            mean_m = self._clearance_integral / self._distance_m
         return Score(
             distance_m=self._distance_m,
             coverage=self._coverage,
             contacts=self._truth.contacts() if self._truth else None,
             clearance_m=self._clearance_m,
             min_clearance_m=self._min_clearance_m,
-            mean_clearance_m=self._clearance_integral / driven if self._truth and driven else self._clearance_m,
+            mean_clearance_m=mean_m,
             distance_to_home_m=(self._last_true or self._last_pose).distance_to(self._home),
         )
 

@@ -55,6 +55,7 @@ class Input(Generic[T]):
             in YAML is validated against. A class that YAML cannot write (``Waypoint``) makes the port
             readable from the blackboard only.
         default: the value (SI), a ``Key``, or ``REQUIRED``.
+        initial: what a blackboard input reads before anything was written; ``REQUIRED`` makes that an error.
         ge, le: bounds of a number, SI.
         doc: one phrase for the reference page.
     """
@@ -64,12 +65,14 @@ class Input(Generic[T]):
         type_: Any,  # a type form; there is no type for those yet
         *,
         default: object = REQUIRED,
+        initial: object = REQUIRED,
         ge: float | None = None,
         le: float | None = None,
         doc: str,
     ) -> None:
         self.type = type_
         self.default = default
+        self.initial = initial
         self.ge, self.le = ge, le
         self.doc = doc
         self.name = ""
@@ -100,12 +103,12 @@ class Input(Generic[T]):
         bound = instance.bindings[self.name]
         if not isinstance(bound, Key):
             return cast(T, bound)
-        try:
-            return cast(T, instance.blackboard[bound.name])
-        except KeyError:
+        value = instance.blackboard.get(bound.name, self.initial)
+        if value is REQUIRED:
             raise PortUnsetError(
                 f"{instance.name}: port {self.name} reads ${bound.name}, which nothing has written yet"
-            ) from None
+            )
+        return cast(T, value)
 
 
 class Output(Generic[T]):

@@ -46,11 +46,18 @@ class Path:
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """A pose worth going to, and what is known about it: the paper's (p^k, r^{k,z})."""
+    """A pose worth going to, and what is known about it: the paper's (p^k, r^{k,z}).
+
+    Attributes:
+        reason: why it was chosen, a word or two.
+        expected_gain_m2: new floor expected to be seen from it.
+        looks_at: (x, y) metres of the frontier it is meant to see; None if it is not about one.
+    """
 
     pose: Pose2
     reason: str = ""
     expected_gain_m2: float = 0.0
+    looks_at: tuple[float, float] | None = None
 
     @property
     def position(self) -> tuple[float, float]:

@@ -1,0 +1,156 @@
+"""Leaf: the paper's FindNextHeading."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from explore_bt.behaviours.give_up_goal import GivenUp
+from explore_bt.exploration import (
+    FreeSector,
+    HalfPlaneHistory,
+    find_free_sectors,
+    next_waypoint,
+    repeated_visit,
+    visible_unknown_area,
+)
+from explore_bt.exploration.clearance import clearance_at
+from explore_bt.tree import Input, Key, Leaf, Output, Status
+from explore_bt.types import Pose2, Scan2D, Waypoint
+from explore_bt.units import Area, Length
+
+__all__ = ["FindNextHeading"]
+
+_GIVEN_UP_RADIUS_M = 0.5
+_STRIDES = 3
+_DEPTH_M = 1.0  # how far into the unknown an opening is believed
+
+
+class FindNextHeading(Leaf):
+    """Takes the safest heading ahead that stays in the half-planes, is not a revisit, and shows new area.
+
+    SUCCESS with the next waypoint in ``goal``; FAILURE when no heading qualifies. Its words list every
+    heading looked at and why it was refused.
+    Source: Algorithm 1 (FindNextHeading) and equations 1–3 of the paper.
+    """
+
+    type_key = "find_next_heading"
+
+    half_planes: Input[int | str] = Input(
+        Annotated[int, Field(ge=1)] | Literal["all"],
+        default="all",
+        doc="L: how many of the last half-planes constrain the waypoint; the paper takes all since the reset",
+    )
+    stride: Input[float] = Input(Length, default=1.5, ge=0.1, doc="d̃: distance to the next waypoint")
+    min_stride: Input[float | None] = Input(
+        Length | None, default=None, doc="try shorter strides down to this before refusing; literal without"
+    )
+    detection_range: Input[float] = Input(
+        Length, default=1.2, ge=0.1, doc="l: a return nearer than this bounds a sector"
+    )
+    revisit: Input[bool] = Input(bool, default=True, doc="whether revisit suppression is on")
+    revisit_cosine: Input[float] = Input(
+        float, default=0.5, ge=-1.0, le=1.0, doc="a^r: largest heading product that still counts as different"
+    )
+    min_gain: Input[float] = Input(
+        Area, default=0.3, ge=0.0, doc="new area that must be expected at the waypoint"
+    )
+    margin: Input[float] = Input(Length, default=0.03, ge=0.0, doc="free space beyond the footprint")
+    look: Input[str] = Input(
+        Literal["ahead", "behind"], default="ahead", doc="which semicircle; behind turns on the way"
+    )
+    bridge_beams: Input[int] = Input(
+        int, default=2, ge=0, doc="drop-outs in a row that do not split a sector; 0 is literal"
+    )
+    visited: Input[tuple[Waypoint, ...]] = Input(
+        tuple, default=Key("visited"), initial=(), doc="P: the waypoints so far"
+    )
+    history: Input[HalfPlaneHistory] = Input(
+        HalfPlaneHistory,
+        default=Key("half_planes"),
+        initial=HalfPlaneHistory(),
+        doc="the half-planes since the last reset",
+    )
+    given_up: Input[tuple[GivenUp, ...]] = Input(
+        tuple, default=Key("given_up"), initial=(), doc="places not to try again"
+    )
+    goal: Output[Waypoint] = Output(Waypoint, default=Key("goal"), doc="p^{k+1} and its heading")
+
+    def update(self) -> Status:
+        """Try the headings in descending order of safety, take the first that passes."""
+        scan = self.robot.scan()
+        if scan is None:
+            self.say("no scan yet")
+            return Status.FAILURE
+        pose = self.robot.estimate().T_map_base
+        sectors = self._sectors(scan)
+        refusals: list[str] = []
+        for sector in sectors:
+            width = f"{math.degrees(sector.width_rad):.0f}°"
+            for stride in self._strides():
+                waypoint = next_waypoint(pose, sector, stride)
+                refusal = self._refusal(waypoint.pose)
+                if not refusal:
+                    return self._take(waypoint, width, refusals, len(sectors))
+            refusals.append(f"{width} refused ({refusal})")
+        self.say("; ".join([_count(len(sectors)), *refusals]))
+        return Status.FAILURE
+
+    def _sectors(self, scan: Scan2D) -> tuple[FreeSector, ...]:
+        return find_free_sectors(
+            scan,
+            detection_range_m=self.detection_range,
+            footprint_radius_m=self.robot.footprint_radius_m,
+            margin_m=self.margin,
+            facing_rad=0.0 if self.look == "ahead" else math.pi,
+            bridge_beams=self.bridge_beams,
+        )
+
+    def _strides(self) -> list[float]:
+        shortest = self.stride if self.min_stride is None else min(self.min_stride, self.stride)
+        count = 1 if shortest == self.stride else _STRIDES
+        return [float(stride) for stride in np.linspace(self.stride, shortest, count)]
+
+    def _refusal(self, pose: Pose2) -> str:
+        """Why a waypoint does not qualify; empty if it does. The cheap rules come first."""
+        window = None if self.half_planes == "all" else int(self.half_planes)
+        if not self.history.contains(pose.xy, window):
+            return "outside the half-planes"
+        if self.revisit:
+            poses = [waypoint.pose for waypoint in self.visited]
+            if repeated_visit(pose, poses, self.detection_range, self.revisit_cosine):
+                return "visited, same direction"
+        if any(_is_near(place, pose) for place in self.given_up):
+            return "given up before"
+        grid = self.robot.view().grid
+        needed_m = self.robot.footprint_radius_m + self.margin
+        clearance_m = float(clearance_at(grid, np.array([pose.xy]), needed_m)[0])
+        if clearance_m < needed_m:
+            return f"only {clearance_m:.2f} m clear at the waypoint, needs {needed_m:.2f} m"
+        self._gain_m2 = visible_unknown_area(grid, pose.xy, self.robot.lidar_range_m, depth_m=_DEPTH_M)
+        if self._gain_m2 < self.min_gain:
+            return f"shows only {self._gain_m2:.2f} m² of new area"
+        return ""
+
+    def _take(self, waypoint: Waypoint, width: str, refusals: list[str], count: int) -> Status:
+        x, y = waypoint.position
+        words = [
+            _count(count),
+            *refusals,
+            f"took {width} → ({x:.1f}, {y:.1f}), {self._gain_m2:.1f} m² to see",
+        ]
+        self.say("; ".join(words))
+        self.goal = Waypoint(waypoint.pose, "safe heading", self._gain_m2)
+        return Status.SUCCESS
+
+
+def _count(sectors: int) -> str:
+    return f"{sectors or 'no'} free sector{'' if sectors == 1 else 's'}"
+
+
+def _is_near(place: GivenUp, pose: Pose2) -> bool:
+    x, y = place.position
+    return math.hypot(pose.x - x, pose.y - y) < _GIVEN_UP_RADIUS_M

@@ -1,0 +1,91 @@
+import numpy as np
+
+from explore_bt.behaviours import DriveTo
+from explore_bt.errors import NoPath
+from explore_bt.interfaces import ControlStatus
+from explore_bt.testing.fake_robot import FakeRobot, open_floor
+from explore_bt.tree import Blackboard, Status
+from explore_bt.types import FREE, OCCUPIED, OccupancyGrid, Pose2, Waypoint
+
+
+def drive(robot: FakeRobot, goal: Pose2 = Pose2(3.0, 0.0, 0.0), **bindings: object) -> DriveTo:
+    board = Blackboard()
+    board.write("goal", Waypoint(goal))
+    leaf = DriveTo("drive", robot, board, bindings)
+    leaf.tick_once()
+    return leaf
+
+
+def test_a_drive_ends_when_the_controller_arrives() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot)
+    assert leaf.status is Status.RUNNING
+    assert len(robot.pilot.followed) == 1
+    robot.pilot.report(ControlStatus.ARRIVED)
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+
+
+def test_a_planners_no_is_a_failure_with_its_code() -> None:
+    robot = FakeRobot(open_floor())
+    robot.refusal = NoPath("no passage wide enough")
+    leaf = drive(robot)
+    assert leaf.status is Status.FAILURE
+    assert leaf.blackboard["failure"] == "no_path"
+    assert leaf.feedback_message == "no path: no passage wide enough"
+    assert robot.pilot.holds == 1
+
+
+def test_a_robot_held_by_the_gate_plans_anew_and_gives_up_in_the_end() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot, patience=2.0, replans=2)
+    robot.pilot.blocked_s = 2.5
+    for _ in range(2):
+        leaf.tick_once()
+        assert leaf.status is Status.RUNNING
+    leaf.tick_once()
+    assert leaf.status is Status.FAILURE
+    assert len(robot.pilot.followed) == 3
+    assert leaf.blackboard["failure"] == "held"
+
+
+def test_an_obstacle_that_appears_on_the_way_ahead_brings_a_new_plan() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot)
+    leaf.tick_once()
+    cells = robot.grid.cells.copy()
+    row, col = robot.grid.cell_of(2.0, 0.0)
+    cells[row, col] = OCCUPIED
+    robot.grid = OccupancyGrid(cells, robot.grid.resolution_m, robot.grid.origin_xy, revision=1)
+    leaf.tick_once()
+    assert len(robot.pilot.followed) == 2
+
+
+def test_an_obstacle_behind_the_robot_does_not() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot)
+    robot.pose = Pose2(2.0, 0.0, 0.0)
+    cells = robot.grid.cells.copy()
+    row, col = robot.grid.cell_of(0.5, 0.0)
+    cells[row, col] = OCCUPIED
+    robot.grid = OccupancyGrid(cells, robot.grid.resolution_m, robot.grid.origin_xy, revision=1)
+    leaf.tick_once()
+    assert len(robot.pilot.followed) == 1
+
+
+def test_a_goal_that_shows_nothing_new_any_more_is_not_driven_to_the_end() -> None:
+    known = OccupancyGrid(np.full((300, 300), FREE, dtype=np.int8), 0.1, (-15.0, -15.0))
+    robot = FakeRobot(known)
+    leaf = drive(robot, until_seen=0.1)
+    assert leaf.status is Status.RUNNING
+    robot.time_s = 1.5
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+    assert "seen from afar" in leaf.feedback_message
+
+
+def test_a_drive_that_is_cut_off_holds_the_robot() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot)
+    leaf.stop(Status.INVALID)
+    assert robot.pilot.holds == 1

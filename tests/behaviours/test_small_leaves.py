@@ -1,0 +1,128 @@
+import math
+
+import numpy as np
+import pytest
+
+from explore_bt.behaviours import (
+    LEAVES,
+    ChooseHome,
+    RecordWaypoint,
+    ResetHalfPlanes,
+    StopRequested,
+    Turn,
+    Wait,
+    WatchProgress,
+)
+from explore_bt.interfaces import ControlStatus
+from explore_bt.testing.fake_robot import FakeRobot, open_floor
+from explore_bt.tree import Blackboard, Leaf, Status
+from explore_bt.types import FREE, UNKNOWN, OccupancyGrid, Pose2, Waypoint
+
+
+@pytest.fixture
+def robot() -> FakeRobot:
+    return FakeRobot(open_floor(), Pose2(1.0, 2.0, 0.5))
+
+
+@pytest.fixture
+def board() -> Blackboard:
+    return Blackboard()
+
+
+@pytest.mark.parametrize("leaf", LEAVES)
+def test_every_leaf_documents_itself_and_its_ports(leaf: type[Leaf]) -> None:
+    assert leaf.__doc__
+    assert leaf.type_key == leaf.type_key.lower()
+    for port in (*leaf.inputs.values(), *leaf.outputs.values()):
+        assert port.doc
+
+
+def test_recording_remembers_the_goal_and_its_half_plane(robot: FakeRobot, board: Blackboard) -> None:
+    board.write("goal", Waypoint(Pose2(3.0, 4.0, math.pi / 2)))
+    RecordWaypoint("record", robot, board).tick_once()
+    assert [w.position for w in board["visited"]] == [(3.0, 4.0)]
+    assert board["half_planes"].contains((9.0, 4.5))
+    assert not board["half_planes"].contains((3.0, 3.5))
+
+
+def test_recording_here_remembers_where_the_robot_stands(robot: FakeRobot, board: Blackboard) -> None:
+    RecordWaypoint("record", robot, board, {"place": "here"}).tick_once()
+    assert board["visited"][0].pose == robot.pose
+
+
+def test_a_reset_leaves_no_constraint(robot: FakeRobot, board: Blackboard) -> None:
+    RecordWaypoint("record", robot, board, {"place": "here"}).tick_once()
+    ResetHalfPlanes("reset", robot, board).tick_once()
+    assert board["half_planes"].contains((-99.0, -99.0))
+
+
+def test_home_is_where_the_mission_began(robot: FakeRobot, board: Blackboard) -> None:
+    robot.pose = Pose2(5.0, 5.0, 0.0)
+    ChooseHome("home", robot, board).tick_once()
+    assert board["goal"].pose == Pose2(1.0, 2.0, 0.5)
+
+
+def test_a_turn_is_a_path_of_one_pose_in_the_new_direction(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = Turn("turn", robot, board)
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING
+    pose = robot.pilot.followed[0].goal
+    assert pose.xy == robot.pose.xy
+    assert math.cos(pose.yaw_rad - robot.pose.yaw_rad) == pytest.approx(-1.0)
+    robot.pilot.report(ControlStatus.ARRIVED)
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+
+
+def test_a_turn_that_does_not_get_on_fails_and_holds(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = Turn("turn", robot, board)
+    leaf.tick_once()
+    robot.pilot.report(ControlStatus.STUCK, "no progress for 5 s")
+    leaf.tick_once()
+    assert leaf.status is Status.FAILURE
+    assert robot.pilot.holds == 1
+
+
+def test_waiting_takes_mission_time(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = Wait("wait", robot, board, {"duration": 2.0})
+    statuses = []
+    for robot.time_s in (0.0, 1.0, 1.9, 2.0):
+        leaf.tick_once()
+        statuses.append(leaf.status)
+    assert statuses == [Status.RUNNING] * 3 + [Status.SUCCESS]
+
+
+def test_the_stop_flag_is_a_condition(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = StopRequested("stop?", robot, board)
+    leaf.tick_once()
+    assert leaf.status is Status.FAILURE
+    robot.stop_requested = True
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+
+
+def floor_of(cells: int) -> OccupancyGrid:
+    grid = np.full((100, 100), UNKNOWN, dtype=np.int8)
+    grid.ravel()[:cells] = FREE
+    return OccupancyGrid(grid, 0.1, (0.0, 0.0))
+
+
+def test_a_live_lock_is_named_after_as_many_decisions_as_were_allowed(
+    robot: FakeRobot, board: Blackboard
+) -> None:
+    leaf = WatchProgress("watch", robot, board, {"decisions": 3})
+    robot.grid = floor_of(1000)
+    statuses = []
+    for _ in range(4):
+        leaf.tick_once()
+        statuses.append(leaf.status)
+    assert statuses == [Status.SUCCESS] * 3 + [Status.FAILURE]
+    assert leaf.feedback_message.startswith("live-lock: 3 decisions brought 0.00 m² of new floor")
+
+
+def test_new_floor_is_progress(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = WatchProgress("watch", robot, board, {"decisions": 3})
+    for k in range(20):
+        robot.grid = floor_of(1000 + 30 * k)
+        leaf.tick_once()
+        assert leaf.status is Status.SUCCESS

@@ -1,0 +1,42 @@
+import math
+
+import numpy as np
+import pytest
+
+from explore_bt.runtime.pose_predictor import PosePredictor
+from explore_bt.types import Estimate, MotionState, Pose2, Twist2
+
+DT = 0.05
+
+
+def test_an_old_estimate_is_carried_along_the_commands_sent_since() -> None:
+    predictor, pose, motion = PosePredictor(), Pose2(1.0, 2.0, 0.3), MotionState()
+    poses = [pose]
+    for step in range(20):
+        following = MotionState(Twist2(0.02 * step, 0.05 * step))
+        predictor.sent(step * DT, motion, following)
+        pose = _finely_integrated(pose, motion.twist, following.twist)
+        poses.append(pose)
+        motion = following
+    for begin in (0, 5, 17):
+        predicted = predictor.predict(Estimate(begin * DT, poses[begin]), 20 * DT)
+        np.testing.assert_allclose(predicted.T_map_base.as_array(), poses[20].as_array(), atol=2e-3)
+        assert predicted.stamp_s == pytest.approx(20 * DT)
+
+
+def _finely_integrated(pose: Pose2, before: Twist2, after: Twist2) -> Pose2:
+    x, y, yaw = pose.x, pose.y, pose.yaw_rad
+    for share in (np.arange(100) + 0.5) / 100:
+        v = before.linear_mps + share * (after.linear_mps - before.linear_mps)
+        w = before.angular_rps + share * (after.angular_rps - before.angular_rps)
+        x += v * DT / 100 * math.cos(yaw)
+        y += v * DT / 100 * math.sin(yaw)
+        yaw += w * DT / 100
+    return Pose2(x, y, yaw)
+
+
+def test_an_estimate_as_new_as_now_is_left_alone() -> None:
+    predictor = PosePredictor()
+    predictor.sent(0.0, MotionState(Twist2(0.5, 0.0)), MotionState(Twist2(0.5, 0.0)))
+    estimate = Estimate(1.0, Pose2(1.0, 1.0, 0.0))
+    assert predictor.predict(estimate, 1.0).T_map_base == estimate.T_map_base
