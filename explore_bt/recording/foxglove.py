@@ -50,7 +50,8 @@ def quote(text: str) -> str:
 
 def time_json(time_ns: int) -> str:
     """A ``time`` of Foxglove's schemas."""
-    return '{"sec":%d,"nsec":%d}' % divmod(time_ns, 1_000_000_000)
+    seconds, rest = divmod(time_ns, 1_000_000_000)
+    return f'{{"sec":{seconds},"nsec":{rest}}}'
 
 
 def _head(time_ns: int) -> str:

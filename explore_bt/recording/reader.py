@@ -6,13 +6,13 @@ import json
 import struct
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Channel, Chunk, Footer, Header, Message
+from mcap.records import Channel, Chunk, Header, Message
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from explore_bt.errors import UserError
@@ -47,16 +47,12 @@ class Recording:
         damage: empty for a whole file, else in words what is missing.
     """
 
-    def __init__(self, path: Path, chunks: list[Chunk], damage: str) -> None:
+    def __init__(self, path: Path, chunks: list[Chunk], channels: dict[int, str], damage: str) -> None:
         self.path = path
         self.damage = damage
         self._chunks = chunks
-        self._channels: dict[int, str] = {}
-        for chunk in chunks[:1]:  # the writer declares every channel in its first chunk
-            for record in breakup_chunk(chunk):
-                if isinstance(record, Channel):
-                    self._channels[record.id] = record.topic
-        self.topics = tuple(self._channels.values())
+        self._channels = channels
+        self.topics = tuple(channels.values())
         self.info = next((message.value for message in self.messages("/run")), {})
 
     @property
@@ -84,7 +80,9 @@ class Recording:
             for record in breakup_chunk(chunk):
                 if not isinstance(record, Message):
                     continue
-                name, stamp_s = self._channels[record.channel_id], record.log_time * 1e-9
+                name, stamp_s = self._channels.get(record.channel_id), record.log_time * 1e-9
+                if name is None:  # declared in a chunk that was lost
+                    continue
                 if topic in (None, name) and start_s <= stamp_s <= end_s:
                     yield RecordedMessage(name, stamp_s, json.loads(record.data))
 
@@ -107,18 +105,42 @@ def read_recording(path: Path) -> Recording:
             found = "an empty file" if size == 0 else "not an MCAP file"
             raise RecordingError(f"{path}: {found}; expected a recording.mcap written by explore-bt run")
         file.seek(0)
-        chunks, whole, damaged = _read_chunks(
-            path, StreamReader(file, emit_chunks=True, record_size_limit=size)
-        )
-    if not chunks:
+        contents = _read_contents(path, StreamReader(file, emit_chunks=True, record_size_limit=size))
+    if not contents.chunks:
         raise RecordingError(f"{path}: cut off before its first second was written; nothing can be recovered")
-    return Recording(path, chunks, _damage(chunks, whole, damaged))
+    return Recording(path, contents.chunks, contents.channels, contents.damage)
 
 
-def _read_chunks(path: Path, reader: StreamReader) -> tuple[list[Chunk], bool, int]:
-    """All sound chunks, whether the end of the file was reached, and how many chunks were unsound."""
-    chunks: list[Chunk] = []
-    damaged = 0
+@dataclass(slots=True)
+class _Contents:
+    """The sound chunks of a file, its channels, and what is wrong with it."""
+
+    chunks: list[Chunk] = field(default_factory=list)
+    channels: dict[int, str] = field(default_factory=dict)
+    unsound: int = 0
+    whole: bool = False
+
+    def take(self, chunk: Chunk) -> None:
+        try:
+            records = breakup_chunk(chunk, validate_crc=True)
+        except _BROKEN:
+            self.unsound += 1
+            return
+        self.chunks.append(chunk)
+        self.channels |= {record.id: record.topic for record in records if isinstance(record, Channel)}
+
+    @property
+    def damage(self) -> str:
+        end_s = max(chunk.message_end_time for chunk in self.chunks) * 1e-9
+        cut = "" if self.whole else f"cut off: ends at {end_s:.1f} s of mission time"
+        lost = (
+            f"{self.unsound} unsound chunk{'s' if self.unsound > 1 else ''} left out" if self.unsound else ""
+        )
+        return "; ".join(part for part in (cut, lost) if part)
+
+
+def _read_contents(path: Path, reader: StreamReader) -> _Contents:
+    contents = _Contents()
     try:
         for record in reader.records:
             if isinstance(record, Header) and record.profile != PROFILE:
@@ -127,28 +149,10 @@ def _read_chunks(path: Path, reader: StreamReader) -> tuple[list[Chunk], bool, i
                     f"expected a recording.mcap written by explore-bt run ({PROFILE!r})"
                 )
             if isinstance(record, Chunk):
-                sound = _is_sound(record)
-                damaged += not sound
-                chunks += [record] if sound else []
-            if isinstance(record, Footer):
-                return chunks, True, damaged
+                contents.take(record)
+            elif isinstance(record, Channel):  # repeated behind the last chunk
+                contents.channels.setdefault(record.id, record.topic)
+        contents.whole = True
     except _BROKEN:
         pass  # the end of a cut file: every chunk before it has been kept
-    return chunks, False, damaged
-
-
-def _is_sound(chunk: Chunk) -> bool:
-    try:
-        breakup_chunk(chunk, validate_crc=True)
-    except _BROKEN:
-        return False
-    return True
-
-
-def _damage(chunks: list[Chunk], whole: bool, damaged: int) -> str:
-    if whole and not damaged:
-        return ""
-    end_s = max(chunk.message_end_time for chunk in chunks) * 1e-9
-    lost = f"{damaged} damaged chunk{'s' if damaged > 1 else ''} left out" if damaged else ""
-    cut = "" if whole else f"cut off: ends at {end_s:.1f} s of mission time"
-    return "; ".join(part for part in (cut, lost) if part)
+    return contents

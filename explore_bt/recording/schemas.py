@@ -71,7 +71,7 @@ _SCHEMAS: Mapping[str, _Schema] = {
         seed=_INTEGER,
         version=_TEXT,
         footprint_radius_m=_ANY,
-        trees=_ANY | {"additionalProperties": _array(_NODE)},
+        trees={"type": "object", "additionalProperties": _array(_NODE)},
     ),
     "explore_bt.Tree": _object(timestamp=_TIME, tick=_INTEGER, key_frame=_FLAG, nodes=_array(_NODE_STATE)),
     "explore_bt.Blackboard": _object(timestamp=_TIME, key_frame=_FLAG, set=_ANY, removed=_array(_TEXT)),

@@ -1,1 +1,21 @@
-"""report"""
+"""What people look at: the report, the map files, the live view in a terminal."""
+
+from explore_bt.report.live import ProgressLines, TerminalView
+from explore_bt.report.map_server_exporter import MapServerExporter
+from explore_bt.report.report_sink import ReportSink
+from explore_bt.report.tum_exporter import TumExporter
+
+__all__ = [
+    "EXPORTERS",
+    "SINKS",
+    "MapServerExporter",
+    "ProgressLines",
+    "ReportSink",
+    "TerminalView",
+    "TumExporter",
+]
+
+SINKS = (ReportSink, TerminalView, ProgressLines)
+"""The sinks of this package, for the plugin host."""
+EXPORTERS = (MapServerExporter, TumExporter)
+"""The exporters of this package, for the plugin host."""

@@ -41,7 +41,7 @@ class Observers:
     def close(self, result: Result | None) -> None:
         """The run is over."""
         for sink in list(self._failures):
-            self._call(sink, partial(sink.close, result))
+            self._call(sink, partial(sink.close, result), patience=1)
 
     def _call(self, sink: Sink, call: Callable[[], None], patience: int = PATIENCE) -> None:
         try:

@@ -1,0 +1,175 @@
+"""Reading a mission and the files it includes, none of them outside the mission's folder."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from explore_bt.mission.document import Entries, Entry, Scalar, Value, parse_document
+from explore_bt.mission.faults import Faults
+from explore_bt.mission.reading import check_keys, expect_entries, expect_items, written
+from explore_bt.mission.source import Place, Source
+from explore_bt.mission.words import did_you_mean
+
+__all__ = ["FORMAT", "INCLUDE_KEYS", "MISSION_KEYS", "MissionText", "read_files"]
+
+FORMAT = "explore-bt/1"
+MISSION_KEYS = (
+    "format",
+    "name",
+    "doc",
+    "params",
+    "include",
+    "plugins",
+    "robots",
+    "tick",
+    "limits",
+    "tree",
+    "trees",
+)
+INCLUDE_KEYS = ("format", "doc", "params", "trees", "include")
+_LARGEST_BYTES = 1_000_000
+_MOST_FILES = 50
+
+
+@dataclass
+class MissionText:
+    """The mission's own mapping, and the parameters and trees of all files."""
+
+    source: Source
+    root: Entries
+    params: dict[str, Entry] = field(default_factory=dict)
+    trees: dict[str, Entry] = field(default_factory=dict)
+    included: dict[Path, Source] = field(default_factory=dict)
+
+
+def read_files(path: Path, faults: Faults) -> MissionText | None:
+    """The mission file and all it includes; None if it cannot be read as a mapping at all."""
+    head = Source(str(path), "", path.parent, has_lines=False)
+    text = _read_text(path, head.place(), f"{path}", faults)
+    if text is None:
+        return None
+    source = Source(str(path), text, path.parent)
+    root = _mapping(source, faults)
+    if root is None:
+        return None
+    mission = MissionText(source, root)
+    _Collector(mission, path, faults).collect(root, MISSION_KEYS, (Path(os.path.realpath(path)),))
+    return mission
+
+
+def _mapping(source: Source, faults: Faults) -> Entries | None:
+    value = parse_document(source, faults)
+    if value is None or isinstance(value, Entries):
+        return value
+    found = "empty" if isinstance(value, Scalar) and value.data is None else written(value)
+    faults.add(source.place(), f"a mission is a mapping; this is {found}", f"begin with format: {FORMAT}")
+    return None
+
+
+def _read_text(path: Path, place: Place, shown: str, faults: Faults) -> str | None:
+    try:
+        with path.open("rb") as file:
+            data = file.read(_LARGEST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        faults.add(place, f"{shown} cannot be read: {reason.lower()}")
+        return None
+    if len(data) > _LARGEST_BYTES:
+        faults.add(place, f"{shown} is larger than 1 MB", "a mission is a small text")
+        return None
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        faults.add(place, f"{shown} is not UTF-8 text (byte {error.start})", "save it as UTF-8")
+        return None
+
+
+class _Collector:
+    """Walks the includes depth first and gathers parameters and trees."""
+
+    def __init__(self, mission: MissionText, path: Path, faults: Faults) -> None:
+        self._mission = mission
+        self._faults = faults
+        self._folder = Path(os.path.realpath(path.parent))
+        self._shown_folder = path.parent
+
+    def collect(self, root: Entries, known: tuple[str, ...], way: tuple[Path, ...]) -> None:
+        """Take what one file brings; ``way`` are the real paths of the files that led to it."""
+        if known == INCLUDE_KEYS:
+            self._check_included_keys(root)
+        else:
+            check_keys(root, known, "a mission", self._faults)
+        self._check_format(root, required=known == MISSION_KEYS)
+        self._gather(root, "params", "{stride: {type: length, default: 1 m}}", self._mission.params)
+        self._gather(root, "trees", "{go: {sequence: [...]}}", self._mission.trees)
+        for value in expect_items(root.get("include"), "include", "[trees/complete.yaml]", self._faults):
+            self._include(value, way)
+
+    def _check_included_keys(self, root: Entries) -> None:
+        for entry in root:
+            if entry.key in MISSION_KEYS and entry.key not in INCLUDE_KEYS:
+                hint = f"an included file holds only {', '.join(INCLUDE_KEYS)}"
+                self._faults.add(entry.place, f'"{entry.key}" belongs into the mission itself', hint)
+            elif entry.key not in INCLUDE_KEYS:
+                hint = did_you_mean(entry.key, INCLUDE_KEYS)
+                self._faults.add(entry.place, f'an included file has no key "{entry.key}"', hint)
+
+    def _check_format(self, root: Entries, required: bool) -> None:
+        entry = root.by_key.get("format")
+        if entry is None:
+            if required:
+                self._faults.add(root.place, "the mission says no format", f"begin with format: {FORMAT}")
+        elif not isinstance(entry.value, Scalar) or entry.value.data != FORMAT:
+            message = f"format {written(entry.value)} is not known"
+            self._faults.add(entry.value.place, message, f"write format: {FORMAT}")
+
+    def _gather(self, root: Entries, section: str, example: str, into: dict[str, Entry]) -> None:
+        entries = expect_entries(root.get(section), section, example, self._faults)
+        for entry in entries or ():
+            if entry.key in into:
+                message = f"{section}.{entry.key} has two owners"
+                self._faults.add(entry.place, message, f"the other stands at {into[entry.key].place}")
+            else:
+                into[entry.key] = entry
+
+    def _include(self, value: Value, way: tuple[Path, ...]) -> None:
+        if not isinstance(value, Scalar) or not isinstance(value.data, str) or not value.data:
+            self._faults.add(value.place, f"include: {written(value)} is not a file name")
+            return
+        named = value.place.source.folder / value.data
+        real = self._real_path(named, value)
+        if real is None:
+            return
+        if real in way:
+            round_trip = " -> ".join(each.name for each in (*way[way.index(real) :], real))
+            self._faults.add(value.place, f"files include one another: {round_trip}", "remove one include")
+            return
+        if real in self._mission.included:
+            return
+        if len(self._mission.included) >= _MOST_FILES:
+            self._faults.add(value.place, f"more than {_MOST_FILES} included files")
+            return
+        text = _read_text(real, value.place, value.data, self._faults)
+        if text is None:
+            return
+        shown = os.path.join(os.path.dirname(value.place.source.name), value.data)
+        source = Source(os.path.normpath(shown), text, named.parent)
+        self._mission.included[real] = source
+        root = _mapping(source, self._faults)
+        if root is not None:
+            self.collect(root, INCLUDE_KEYS, (*way, real))
+
+    def _real_path(self, named: Path, value: Scalar) -> Path | None:
+        """Where the file really is; None (and a fault) if that is outside the mission's folder."""
+        try:
+            real = Path(os.path.realpath(named))
+        except (OSError, ValueError):
+            self._faults.add(value.place, f"include: {value.text} is not a file name")
+            return None
+        if Path(str(value.data)).is_absolute() or not real.is_relative_to(self._folder):
+            message = f"{value.text} lies outside the mission's folder"
+            self._faults.add(value.place, message, f"included files stay below {self._shown_folder}/")
+            return None
+        return real

@@ -1,0 +1,183 @@
+"""Mission files to checked missions."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from explore_bt.mission.catalog import PluginCatalog
+from explore_bt.mission.document import Entries, Entry, Scalar, Value
+from explore_bt.mission.faults import Faults
+from explore_bt.mission.files import MissionText, read_files
+from explore_bt.mission.limits import read_limits, read_tick
+from explore_bt.mission.model import Mission, RobotSpec
+from explore_bt.mission.nodes import NodeSpec
+from explore_bt.mission.overrides import SECTIONS, Override, overridden, params_overridden, read_overrides
+from explore_bt.mission.params import PLUGIN_KINDS, Param, param_value, read_param
+from explore_bt.mission.reading import expect_entries, expect_items, expect_text, written
+from explore_bt.mission.references import BROKEN, Scope, resolve
+from explore_bt.mission.robots import read_robot, unknown_plugin
+from explore_bt.mission.source import Place
+from explore_bt.mission.tree_reader import TreeReader
+from explore_bt.mission.wiring import check_wiring
+from explore_bt.mission.words import did_you_mean
+
+__all__ = ["load_mission"]
+
+_MISSION_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
+
+
+def load_mission(
+    path: Path,
+    catalog: PluginCatalog,
+    overrides: Sequence[str] | Mapping[str, str] = (),
+    cwd: Path | None = None,
+    environ: Mapping[str, str] | None = None,
+) -> Mission:
+    """Read, resolve and check a mission; no robot is needed and no plugin is set up.
+
+    Args:
+        path: the mission file.
+        catalog: the installed plugins.
+        overrides: ``name=value``: a parameter, or ``limits.x`` or ``tick.x``; the value is YAML.
+        cwd: what relative files in overrides are relative to; the current directory by default.
+        environ: what ``$env.X`` means; the process's environment by default.
+
+    Raises:
+        MissionError: with every fault of every file and override.
+    """
+    faults = Faults()
+    given = read_overrides(overrides, cwd or Path.cwd(), faults)
+    mission = read_files(path, faults)
+    if mission is None:
+        faults.raise_if_any()
+    assert mission is not None  # read_files has noted why not, and that was raised
+    return _Loader(mission, catalog, given, os.environ if environ is None else environ, faults).load(path)
+
+
+class _Loader:
+    """Goes through the sections in the order in which they depend on one another."""
+
+    def __init__(
+        self,
+        text: MissionText,
+        catalog: PluginCatalog,
+        overrides: Sequence[Override],
+        environ: Mapping[str, str],
+        faults: Faults,
+    ) -> None:
+        self._text = text
+        self._root = text.root
+        self._catalog = catalog
+        self._overrides = overrides
+        self._environ = environ
+        self._faults = faults
+
+    def load(self, path: Path) -> Mission:
+        name = self._name(path)
+        doc = expect_text(self._root.get("doc"), "doc", self._faults) or ""
+        declared, params = self._params()
+        self._check_plugins()
+        sections = {section: self._section(section, params) for section in SECTIONS}
+        limits = read_limits(sections["limits"], self._text.source.folder, self._faults)
+        tree_hz, control_hz = read_tick(sections["tick"], self._text.source.folder, self._faults)
+        robots = self._robots(params)
+        self._faults.raise_if_any()
+        return Mission(
+            name=name,
+            doc=doc,
+            path=path,
+            text=self._text.source.text,
+            sha256=_digest(self._text, params),
+            params=params,
+            robots=robots,
+            tree_rate_hz=tree_hz,
+            control_rate_hz=control_hz,
+            limits=limits,
+            included=tuple(self._text.included),
+            declared=declared,
+        )
+
+    def _name(self, path: Path) -> str:
+        value = self._root.get("name")
+        name = expect_text(value, "name", self._faults)
+        if value is not None and name is not None and not _MISSION_NAME.fullmatch(name):
+            self._faults.add(value.place, f'"{name}" is no name for a mission', "letters, digits, _ . -")
+        return name or path.stem
+
+    def _params(self) -> tuple[tuple[Param, ...], dict[str, object]]:
+        entries = self._text.params
+        declared: list[Param] = []
+        new = params_overridden(self._overrides, entries, self._faults)
+        params: dict[str, object] = {}
+        for name, entry in entries.items():
+            param = read_param(entry, self._faults)
+            value = param and param_value(param, new.get(name), self._catalog, self._environ, self._faults)
+            params[name] = BROKEN if param is None else value
+            declared += [param] if param else []
+        return tuple(declared), params
+
+    def _section(self, section: str, params: Mapping[str, object]) -> Entries:
+        found = expect_entries(self._root.get(section), section, "name: value", self._faults)
+        entries = overridden(section, found or Entries((), self._root.place), self._overrides)
+        scope = Scope(params, self._environ)
+        resolved = (Entry(e.key, e.place, resolve(e.value, scope, self._faults)) for e in entries)
+        return Entries(tuple(resolved), entries.place)
+
+    def _check_plugins(self) -> None:
+        for value in expect_items(self._root.get("plugins"), "plugins", "[behaviour/my_leaf]", self._faults):
+            text = value.data if isinstance(value, Scalar) else None
+            kind, slash, name = text.partition("/") if isinstance(text, str) else ("", "", "")
+            if not slash or not name:
+                message = f"plugins: {written(value)} is not of the form kind/name"
+                self._faults.add(value.place, message, "for example slam/kiss_gtsam")
+            elif kind not in PLUGIN_KINDS:
+                hint = did_you_mean(kind, PLUGIN_KINDS, "kinds")
+                self._faults.add(value.place, f'there is no plugin kind "{kind}"', hint)
+            elif name not in self._catalog.names(kind):
+                unknown_plugin(self._catalog, kind, name, value.place, self._faults)
+
+    def _robots(self, params: Mapping[str, object]) -> tuple[RobotSpec, ...]:
+        entries = expect_entries(self._root.get("robots"), "robots", "robots: {robot: {...}}", self._faults)
+        if entries is None or not entries.entries:
+            self._faults.add(self._root.place, "the mission has no robots", "write robots: {robot: {...}}")
+            entries = Entries((), self._root.place)
+        reader = TreeReader(self._text.trees, self._catalog, self._faults)
+        robots = []
+        for entry in entries:
+            scope = Scope(params, self._environ, entry.key)
+
+            def read_tree(own: Value | None, place: Place, scope: Scope = scope) -> NodeSpec | None:
+                return self._tree(reader, own, place, scope)
+
+            robots.append(read_robot(entry, scope, self._catalog, read_tree, self._faults))
+        reader.check_unused(Scope(params, self._environ, "robot"))
+        return tuple(robot for robot in robots if robot is not None)
+
+    def _tree(self, reader: TreeReader, own: Value | None, place: Place, scope: Scope) -> NodeSpec | None:
+        value = own or self._root.get("tree")
+        if value is None:
+            hint = did_you_mean("", self._text.trees, "write tree: NAME; trees")
+            self._faults.add(place, f"robot {scope.robot} has no tree", hint)
+            return None
+        root = reader.root(value, scope)
+        if root is not None and reader.complete:
+            check_wiring(root, self._faults)
+        return root
+
+
+def _digest(text: MissionText, params: Mapping[str, object]) -> str:
+    folder = text.source.folder
+
+    def portable(value: object) -> object:
+        return Path(os.path.relpath(value, folder)).as_posix() if isinstance(value, Path) else str(value)
+
+    digest = hashlib.sha256()
+    for part in (text.source.text, *(source.text for source in text.included.values())):
+        digest.update(hashlib.sha256(part.encode()).digest())
+    digest.update(json.dumps(params, sort_keys=True, default=portable).encode())
+    return digest.hexdigest()

@@ -1,0 +1,78 @@
+"""A checked mission: everything resolved, nothing built yet."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from explore_bt.interfaces import Controller, Driver, Planner, Plugin, PluginOptions, Slam
+from explore_bt.mission.limits import LimitsSpec
+from explore_bt.mission.nodes import NodeSpec
+from explore_bt.mission.params import Param
+from explore_bt.types import Pose2
+
+__all__ = ["Mission", "PluginChoice", "RobotSpec"]
+
+P = TypeVar("P", bound=Plugin)
+
+
+@dataclass(frozen=True, slots=True)
+class PluginChoice(Generic[P]):
+    """A plugin with its checked options."""
+
+    kind: str
+    name: str
+    cls: type[P]
+    options: PluginOptions
+
+    def make(self) -> P:
+        """A new plugin; it touches nothing before its ``setup``."""
+        return self.cls(self.options)
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSpec:
+    """One robot's stack.
+
+    Attributes:
+        start: pose of ``base_link`` in ``map``; None leaves it to the driver.
+        tree: root of its behaviour tree.
+    """
+
+    name: str
+    start: Pose2 | None
+    driver: PluginChoice[Driver]
+    slam: PluginChoice[Slam]
+    planner: PluginChoice[Planner]
+    controller: PluginChoice[Controller]
+    tree: NodeSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Mission:
+    """What a mission file says, checked.
+
+    Attributes:
+        path: the file; ``text`` is its content.
+        included: the other files it brought in.
+        sha256: over its text, the included texts and the resolved parameters (files by their name
+            relative to the mission's folder): the same wherever the mission lies.
+        params: parameter -> value in SI; None where it is not given.
+        declared: the parameters' declarations: type, bounds, doc.
+        control_rate_hz: a whole multiple of ``tree_rate_hz``.
+    """
+
+    name: str
+    doc: str
+    path: Path
+    text: str
+    sha256: str
+    params: Mapping[str, object]
+    robots: tuple[RobotSpec, ...]
+    tree_rate_hz: float
+    control_rate_hz: float
+    limits: LimitsSpec
+    included: tuple[Path, ...] = ()
+    declared: tuple[Param, ...] = ()

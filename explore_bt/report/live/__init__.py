@@ -1,0 +1,6 @@
+"""The run as it happens: a live view for terminals, plain lines for everything else."""
+
+from explore_bt.report.live.progress import ProgressLines
+from explore_bt.report.live.terminal import TerminalView
+
+__all__ = ["ProgressLines", "TerminalView"]
