@@ -10,6 +10,7 @@ from explore_bt.behaviours.reset_half_planes import ResetHalfPlanes
 from explore_bt.behaviours.stop_requested import StopRequested
 from explore_bt.behaviours.turn import Turn
 from explore_bt.behaviours.wait import Wait
+from explore_bt.behaviours.wait_until_localised import WaitUntilLocalised
 from explore_bt.behaviours.watch_progress import WatchProgress
 
 __all__ = [
@@ -25,6 +26,7 @@ __all__ = [
     "StopRequested",
     "Turn",
     "Wait",
+    "WaitUntilLocalised",
     "WatchProgress",
 ]
 
@@ -39,5 +41,6 @@ LEAVES = (
     StopRequested,
     Turn,
     Wait,
+    WaitUntilLocalised,
     WatchProgress,
 )

@@ -58,7 +58,7 @@ class FindNextHeading(Leaf):
     min_gain: Input[float] = Input(
         Area, default=0.3, ge=0.0, doc="new area that must be expected at the waypoint"
     )
-    margin: Input[float] = Input(Length, default=0.03, ge=0.0, doc="free space beyond the footprint")
+    margin: Input[float] = Input(Length, default=0.02, ge=0.0, doc="free space beyond the footprint")
     look: Input[str] = Input(
         Literal["ahead", "behind"], default="ahead", doc="which semicircle; behind turns on the way"
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 
 import numpy as np
 
@@ -45,7 +44,12 @@ class FindViewpoint(Leaf):
     min_size: Input[float] = Input(
         Length, default=0.15, ge=0.0, doc="shorter frontiers are leaks between beams"
     )
-    margin: Input[float] = Input(Length, default=0.03, ge=0.0, doc="free space beyond the footprint")
+    margin: Input[float] = Input(
+        Length,
+        default=0.02,
+        ge=0.0,
+        doc="free space beyond the footprint, given up as the last resort",
+    )
     goal: Output[Waypoint] = Output(Waypoint, default=Key("goal"), doc="the place, heading for the frontier")
     given_up: Output[tuple[GivenUp, ...]] = Output(
         tuple, default=Key("given_up"), doc="places not to try again"
@@ -56,20 +60,21 @@ class FindViewpoint(Leaf):
     reason: Output[str] = Output(str, default=Key("reason"), doc="why the exploration is over")
 
     def update(self) -> Status:
-        """Choose among all viewpoints of the newest map."""
-        while True:
-            choice = self._choice()
-            best = min(choice.viewpoints, key=_cost_m, default=None)
-            if best is None:
-                return self._conclude(choice)
-            if best.travel_m > _HERE_M:
-                return self._take(best, len(choice.viewpoints))
-            self._give_up(best)
+        """Choose among all viewpoints of the newest map; through tight passages only for want of others."""
+        for margin_m in dict.fromkeys((self.margin, 0.0)):
+            choice = self._choice(margin_m)
+            while choice.viewpoints:
+                best = min(choice.viewpoints, key=_cost_m)
+                if best.travel_m > _HERE_M:
+                    return self._take(best, len(choice.viewpoints))
+                self._give_up(best)
+                choice = self._choice(margin_m)
+        return self._conclude(choice)
 
-    def _choice(self) -> ViewpointChoice:
+    def _choice(self, margin_m: float) -> ViewpointChoice:
         view = self.robot.view()
         grid, clearance_m = view.grid, view.clearance_m
-        radius_m = self.robot.footprint_radius_m + self.margin
+        radius_m = self.robot.footprint_radius_m + margin_m
         here = grid.cell_of(*self.robot.estimate().T_map_base.xy)
         travel_m = travel_field(clearance_m, np.array([here]), radius_m, grid.resolution_m)
         return choose_viewpoints(
@@ -106,15 +111,16 @@ class FindViewpoint(Leaf):
         return self.recall("given_up", ())
 
     def _conclude(self, choice: ViewpointChoice) -> Status:
-        self.left_open = (
-            *(_sentence(left.frontier.centroid, left.reason) for left in choice.left_open),
-            *(_sentence(place.position, place.reason) for place in self._tried()),
-        )
-        kinds = Counter(left.reason.split(":")[0].split(" by ")[0] for left in choice.left_open)
-        rest = ", ".join(f"{count} × {kind}" for kind, count in sorted(kinds.items()))
-        words = "no reachable frontier shows enough new area" + (f" ({rest})" if rest else "")
-        self.reason = words
-        self.say(words)
+        """Name what stays open, frontiers with the same reason together."""
+        open_at: dict[str, list[tuple[float, float]]] = {}
+        for left in choice.left_open:
+            if not left.is_closed:
+                open_at.setdefault(left.reason, []).append(left.frontier.centroid)
+        for place in self._tried():
+            open_at.setdefault(place.reason, []).append(place.position)
+        self.left_open = tuple(_sentence(positions, reason) for reason, positions in open_at.items())
+        self.reason = f"no reachable frontier shows {self.min_gain:.2f} m² of new area or more"
+        self.say(self.reason)
         return Status.FAILURE
 
 
@@ -122,5 +128,7 @@ def _cost_m(place: Viewpoint) -> float:
     return place.travel_m - _WORTH_M_PER_M2 * min(place.gain_m2, _MOST_WORTH_M2)
 
 
-def _sentence(position: tuple[float, float], reason: str) -> str:
-    return f"({position[0]:.1f}, {position[1]:.1f}): {reason}"
+def _sentence(positions: list[tuple[float, float]], reason: str) -> str:
+    x, y = positions[0]
+    more = f" and {len(positions) - 1} more" if len(positions) > 1 else ""
+    return f"({x:.1f}, {y:.1f}){more}: {reason}"

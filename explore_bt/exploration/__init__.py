@@ -1,1 +1,76 @@
-"""exploration"""
+"""The paper's mathematics: pure functions over frozen values, no tree and no plugin in sight.
+
+One decision takes the steps of ALGORITHM.md in this order::
+
+    Scan2D ──► find_free_sectors ──► order_by_safety       1, 2   q_1 … q_n, the safest first
+                     │
+                     ▼  for each q_i
+               next_waypoint                               3      p^{k+1} = p^k + d̃ (cos θ, sin θ)
+                     │
+                     ▼
+               HalfPlaneHistory.contains                   4      p^{k+1} in H_{k−L+1}^k
+                     │
+                     ▼
+               is_allowed (why not: repeated_visit)        5      new place, or new direction
+                     │
+                     ▼
+               visible_unknown_area                        6      it can show new area
+                     │
+                     ├── yes ──► drive there; HalfPlaneHistory.push
+                     └── none ─► HalfPlaneHistory.reset, again; then facing_rad = π with a^r = 1     7
+
+What the paper leaves open is answered on the map::
+
+    OccupancyGrid ──► clearance_field ──► travel_field ──┐
+          └─────────► find_frontiers ────────────────────┴──► choose_viewpoints
+                                                              viewpoints, or the reason why not
+
+``CoverageMeter`` and ``ate_rmse_m`` measure a run against the truth. ``warm_up`` compiles the kernels.
+"""
+
+from explore_bt.exploration.alignment import align_se2, ate_rmse_m
+from explore_bt.exploration.arguments import ArgumentError
+from explore_bt.exploration.choice import choose_viewpoints
+from explore_bt.exploration.clearance import clearance_at, clearance_field
+from explore_bt.exploration.compilation import warm_up
+from explore_bt.exploration.coverage import CoverageMeter
+from explore_bt.exploration.free_sectors import FreeSector, find_free_sectors, order_by_safety
+from explore_bt.exploration.frontier import Frontier, find_frontiers, frontier_mask
+from explore_bt.exploration.gain import gain_many, visible_unknown_area
+from explore_bt.exploration.half_plane import HalfPlane, HalfPlaneHistory
+from explore_bt.exploration.passage import passage_field
+from explore_bt.exploration.revisit import is_allowed, repeated_visit
+from explore_bt.exploration.travel import nearest_reaching_cell, travel_field
+from explore_bt.exploration.viewpoint import LeftOpen, Viewpoint, ViewpointChoice, reachable_frontiers
+from explore_bt.exploration.waypoint import next_waypoint
+
+__all__ = [
+    "ArgumentError",
+    "CoverageMeter",
+    "FreeSector",
+    "Frontier",
+    "HalfPlane",
+    "HalfPlaneHistory",
+    "LeftOpen",
+    "Viewpoint",
+    "ViewpointChoice",
+    "align_se2",
+    "ate_rmse_m",
+    "choose_viewpoints",
+    "clearance_at",
+    "clearance_field",
+    "find_free_sectors",
+    "find_frontiers",
+    "frontier_mask",
+    "gain_many",
+    "is_allowed",
+    "nearest_reaching_cell",
+    "next_waypoint",
+    "order_by_safety",
+    "passage_field",
+    "reachable_frontiers",
+    "repeated_visit",
+    "travel_field",
+    "visible_unknown_area",
+    "warm_up",
+]

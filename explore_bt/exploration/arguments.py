@@ -21,7 +21,7 @@ def require_positive(**values: float) -> None:
     """
     for name, value in values.items():
         if not (value > 0.0 and math.isfinite(value)):
-            raise ArgumentError(f"{name}: {value} found, expected a finite number above 0; give one such value")
+            raise ArgumentError(f"{name}: {value} found, expected a finite number above 0; give such a value")
 
 
 def require_at_least(minimum: float, **values: float) -> None:
@@ -33,5 +33,5 @@ def require_at_least(minimum: float, **values: float) -> None:
     for name, value in values.items():
         if not (value >= minimum and math.isfinite(value)):
             raise ArgumentError(
-                f"{name}: {value} found, expected a finite number of at least {minimum:g}; give one such value"
+                f"{name}: {value} found, expected a finite number of at least {minimum:g}; give such a value"
             )

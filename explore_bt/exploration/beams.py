@@ -14,6 +14,7 @@ __all__ = ["Beams"]
 
 _TURN = 2.0 * math.pi
 _JOINED = 1.5  # beams up to so many steps apart are neighbours; beyond, a beam is missing
+_TOUCH_M = 1e-6  # a return at l exactly is free, however its point was rounded
 _WIDEST_CELL_RAD = math.radians(10.0)  # no beam speaks for more than this, however few there are
 
 
@@ -46,7 +47,7 @@ class Beams:
         spans = np.diff(directions, append=directions[:1] + _TURN)
         points = scan.points()
         distances = np.hypot(points[:, 0], points[:, 1])
-        near = distances < detection_range_m
+        near = distances < detection_range_m - _TOUCH_M
         is_blocked = np.zeros(around.shape, dtype=np.bool_)
         is_blocked[np.flatnonzero(scan.is_return)[near]] = True
         return Beams(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,24 +57,24 @@ def find_frontiers(
         off_walls: as for :func:`frontier_mask`.
     """
     labels, count = ndimage.label(frontier_mask(grid, off_walls=off_walls), _EIGHT)
-    rows, cols = np.nonzero(labels)
-    label = labels[rows, cols]
+    if count == 0:
+        return ()
+    cells = np.column_stack(np.nonzero(labels))
+    label = labels[cells[:, 0], cells[:, 1]]
     order = np.argsort(label, kind="stable")
-    cells = np.column_stack((rows, cols))[order]
-    clusters = np.split(cells, np.searchsorted(label[order], np.arange(2, count + 1))) if count else []
-    frontiers = sorted(
-        (_frontier(grid, cluster) for cluster in clusters), key=lambda f: tuple(f.cells[0].tolist())
-    )
-    return tuple(frontier for frontier in frontiers if frontier.size_m >= min_size_m)
+    cells, starts = cells[order], np.searchsorted(label[order], np.arange(1, count + 1))
+    extent = np.maximum.reduceat(cells, starts) - np.minimum.reduceat(cells, starts)
+    sizes_m = (1.0 + np.hypot(extent[:, 0], extent[:, 1])) * grid.resolution_m
+    frontiers = [
+        _frontier(grid, cluster, float(size_m))
+        for cluster, size_m in zip(np.split(cells, starts[1:]), sizes_m, strict=True)
+        if size_m >= min_size_m
+    ]
+    return tuple(sorted(frontiers, key=lambda frontier: tuple(frontier.cells[0].tolist())))
 
 
-def _frontier(grid: OccupancyGrid, cells: NDArray[np.int64]) -> Frontier:
-    extent = cells.max(axis=0) - cells.min(axis=0)
+def _frontier(grid: OccupancyGrid, cells: NDArray[np.int64], size_m: float) -> Frontier:
     middle = cells.mean(axis=0)
+    x, y = grid.centers_of(middle[None])[0].tolist()
     row, col = cells[int(np.argmin(((cells - middle) ** 2).sum(axis=1)))].tolist()
-    return Frontier(
-        cells=cells,
-        centroid=grid.center_of(float(middle[0]), float(middle[1])),  # type: ignore[arg-type]  # a mean cell is fractional
-        middle_cell=(row, col),
-        size_m=(1.0 + math.hypot(*extent.tolist())) * grid.resolution_m,
-    )
+    return Frontier(cells=cells, centroid=(x, y), middle_cell=(row, col), size_m=size_m)

@@ -9,6 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from explore_bt.exploration.arguments import require_positive
+from explore_bt.exploration.kernel_input import read_only
 from explore_bt.types import OCCUPIED, UNKNOWN, OccupancyGrid
 
 __all__ = ["gain_many", "visible_unknown_area"]
@@ -25,7 +26,7 @@ def _see_along(cells, seen, mark, u, v, du, dv, corner, reach, depth):  # type: 
     ``corner`` is the grid's cell at seen[0, 0]. After Amanatides & Woo, 1987.
     """
     rows, cols = cells.shape
-    row, col = int(math.floor(v)), int(math.floor(u))
+    row, col = math.floor(v), math.floor(u)
     step_row, step_col = (1 if dv > 0.0 else -1), (1 if du > 0.0 else -1)
     per_row = abs(1.0 / dv) if dv != 0.0 else math.inf
     per_col = abs(1.0 / du) if du != 0.0 else math.inf
@@ -61,8 +62,8 @@ def _see_along(cells, seen, mark, u, v, du, dv, corner, reach, depth):  # type: 
 @njit(cache=True)
 def _see(cells, seen, mark, u, v, reach, depth, middle, half_view):  # type: ignore[no-untyped-def]  # numba kernel
     """Unknown cells visible from (u, v), with one ray to each cell of a square ring just out of reach."""
-    ring = int(math.ceil(reach)) + 1
-    row0, col0 = int(math.floor(v)), int(math.floor(u))
+    ring = math.ceil(reach) + 1
+    row0, col0 = math.floor(v), math.floor(u)
     corner = (row0 - ring - 1, col0 - ring - 1)
     found = 0
     for k in range(8 * ring):
@@ -88,7 +89,7 @@ def _see(cells, seen, mark, u, v, reach, depth, middle, half_view):  # type: ign
 @njit(cache=True)
 def _see_from_each(cells, eyes, reach, depth, middles, half_views):  # type: ignore[no-untyped-def]  # numba kernel
     """Visible unknown cells of each of (N, 2) eyes, given as columns and rows in cells."""
-    size = 2 * int(math.ceil(reach)) + 5
+    size = 2 * math.ceil(reach) + 5
     seen = np.full((size, size), -1, dtype=np.int32)
     found = np.zeros(eyes.shape[0], dtype=np.int64)
     for i in range(eyes.shape[0]):
@@ -129,10 +130,15 @@ def gain_many(
     """
     require_positive(range_m=range_m)
     eyes = (np.asarray(points, dtype=np.float64).reshape(-1, 2) - grid.origin_xy) / grid.resolution_m
-    middles = np.ascontiguousarray(np.broadcast_to(np.asarray(heading_rad, np.float64), eyes.shape[:1]))
-    half_views = np.ascontiguousarray(np.broadcast_to(np.asarray(fov_rad, np.float64) / 2.0, eyes.shape[:1]))
+    middles = np.broadcast_to(np.asarray(heading_rad, dtype=np.float64), eyes.shape[:1])
+    half_views = np.broadcast_to(np.asarray(fov_rad, dtype=np.float64) / 2.0, eyes.shape[:1])
     found = _see_from_each(
-        grid.cells, eyes, range_m / grid.resolution_m, depth_m / grid.resolution_m, middles, half_views
+        read_only(grid.cells),
+        read_only(eyes),
+        range_m / grid.resolution_m,
+        depth_m / grid.resolution_m,
+        read_only(middles),
+        read_only(half_views),
     )
     return np.asarray(found * grid.resolution_m**2, dtype=np.float64)
 

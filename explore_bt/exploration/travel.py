@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from explore_bt.exploration.arguments import require_at_least, require_positive
-from explore_bt.exploration.escape import escape_distances
+from explore_bt.exploration.escape import ways_out
 
 __all__ = ["nearest_reaching_cell", "travel_field"]
 
@@ -17,55 +17,140 @@ _DIAGONAL = math.sqrt(2.0)
 
 
 @njit(cache=True)
-def _relax(distance, factor, weighted, buckets, filled, here, there, length):  # type: ignore[no-untyped-def]  # numba kernel
-    """Shorten the way to ``there`` by the step from ``here``, and queue it when its bucket changes."""
-    if weighted:
-        length *= 0.5 * (factor[here] + factor[there])
-    old, new = distance[there], distance[here] + length
-    if new < old:
-        distance[there] = new
-        level = int(new)
-        if old == math.inf or int(old) != level:
-            bucket = level % filled.size
-            buckets[bucket, filled[bucket]] = there
-            filled[bucket] += 1
-
-
-@njit(cache=True)
-def _spread(passable, factor, weighted, width, seeds, distance, bucket_count):  # type: ignore[no-untyped-def]  # numba kernel
+def _spread(passable, width, distance, factor, seeds, bucket_count):  # type: ignore[no-untyped-def]  # numba kernel
     """Shortest distances in cells over a padded, flattened mask; ``distance`` holds those of the seeds.
 
-    Buckets one cell wide: no step is shorter, so every cell in the lowest bucket is settled, in whatever
-    order it is taken (Dial, 1969; Dinic, 1978).
+    Buckets are one cell wide: no step is shorter, so every cell in the lowest bucket is settled, in
+    whatever order it is taken (Dial, 1969; Dinic, 1978). One loop on purpose: handing arrays to a helper
+    at every step costs ten times the step.
     """
-    buckets = np.empty((bucket_count, passable.size), dtype=np.int32)
+    steps = np.array((width, -width, -1, 1, width - 1, width + 1, -width - 1, -width + 1))
+    beside = np.array((0, 0, 0, 0, width, width, -width, -width))  # of a diagonal; the other is the rest
+    buckets = np.empty((bucket_count, passable.size + seeds.size), dtype=np.int32)
     filled = np.zeros(bucket_count, dtype=np.int64)
-    level, waiting = 0, seeds.size
-    by_level = np.argsort(distance[seeds], kind="mergesort")
-    due = 0
-    while due < waiting or filled.any():
-        while due < waiting and int(distance[seeds[by_level[due]]]) <= level:
-            bucket = level % bucket_count
-            buckets[bucket, filled[bucket]] = seeds[by_level[due]]
+    due, level = 0, 0  # seeds come nearest first
+    while due < seeds.size or filled.any():
+        bucket = level % bucket_count
+        while due < seeds.size and int(distance[seeds[due]]) <= level:
+            buckets[bucket, filled[bucket]] = seeds[due]
             filled[bucket] += 1
             due += 1
-        bucket = level % bucket_count
         for i in range(filled[bucket]):
             here = buckets[bucket, i]
-            if int(distance[here]) != level:
+            so_far = distance[here]
+            if int(so_far) != level:  # it was settled from a lower bucket
                 continue
-            up, down = passable[here + width], passable[here - width]
-            left, right = passable[here - 1], passable[here + 1]
-            for open_, there in ((left, here - 1), (right, here + 1), (down, here - width), (up, here + width)):
-                if open_:
-                    _relax(distance, factor, weighted, buckets, filled, here, there, 1.0)
-            for open_, there in (
-                (up and left, here + width - 1),
-                (up and right, here + width + 1),
-                (down and left, here - width - 1),
-                (down and right, here - width + 1),
-            ):
-                if open_ and passable[there]:
-                    _relax(distance, factor, weighted, buckets, filled, here, there, _DIAGONAL)
+            for k in range(8):
+                there = here + steps[k]
+                if not passable[there]:
+                    continue
+                length = 1.0
+                if k >= 4:
+                    if not (passable[here + beside[k]] and passable[there - beside[k]]):
+                        continue
+                    length = _DIAGONAL
+                if factor.size:
+                    length *= 0.5 * (factor[here] + factor[there])
+                if so_far + length >= distance[there]:
+                    continue
+                due_in = int(so_far + length)
+                if distance[there] >= due_in + 1:  # not yet in that bucket
+                    queue = due_in % bucket_count
+                    buckets[queue, filled[queue]] = there
+                    filled[queue] += 1
+                distance[there] = so_far + length
         filled[bucket] = 0
         level += 1
+
+
+def _factors(clearance_m: NDArray[np.float32], weight: float, comfort_m: float) -> NDArray[np.float32]:
+    """Cost of a metre by clearance, padded and flat; empty where a metre costs a metre everywhere."""
+    if weight == 0.0:
+        return np.empty(0, dtype=np.float32)
+    require_positive(comfort_m=comfort_m)
+    tightness = 1.0 - np.minimum(clearance_m / comfort_m, 1.0)
+    return np.pad(np.asarray(1.0 + weight * tightness, dtype=np.float32), 1).ravel()
+
+
+def travel_field(
+    clearance_m: NDArray[np.float32],
+    start_cells: NDArray[np.integer] | tuple[int, int],
+    radius_m: float,
+    resolution_m: float,
+    *,
+    clearance_weight: float = 0.0,
+    comfort_m: float = 0.6,
+    escape_m: float = 0.6,
+) -> NDArray[np.float32]:
+    """Length of the shortest way from the robot to every cell where its footprint fits.
+
+    Steps go to the eight neighbours, at 1 and √2 cells, through cells with clearance ≥ r; a diagonal step
+    needs both cells beside it, so no corner is cut. A start that is tighter than r is left as planners
+    leave it: over free cells along which clearance never falls, for at most ``escape_m``.
+
+    Args:
+        clearance_m: (rows, cols) float32, as from :func:`clearance_field`.
+        start_cells: (row, col), or (N, 2) of them; those outside the grid are ignored.
+        radius_m: r, the footprint.
+        resolution_m: metres per cell.
+        clearance_weight: w; above 0, a metre costs 1 + w (1 − clearance/comfort) where clearance is below
+            ``comfort_m``, and the field is a cost in metres of roomy floor.
+        comfort_m: clearance from which on a metre costs a metre.
+        escape_m: how far the robot may drive to leave a tight start.
+
+    Returns:
+        (rows, cols) float32, metres; 0 at the start, inf where the robot cannot stand or come.
+
+    Raises:
+        ArgumentError: if the resolution is not above zero, or r or the weight below zero.
+    """
+    require_positive(resolution_m=resolution_m)
+    require_at_least(0, radius_m=radius_m, clearance_weight=clearance_weight, escape_m=escape_m)
+    rows, cols = clearance_m.shape
+    starts = np.asarray(start_cells, dtype=np.int64).reshape(-1, 2)
+    starts = starts[((starts >= 0) & (starts < (rows, cols))).all(axis=1)]
+    seeds, climbed = ways_out(clearance_m, starts, radius_m, escape_m / resolution_m)
+    passable = np.zeros((rows + 2, cols + 2), dtype=np.bool_)
+    np.logical_and(clearance_m >= radius_m, clearance_m > 0.0, out=passable[1:-1, 1:-1])
+    distance = np.full((rows + 2, cols + 2), np.inf)
+    distance[seeds[:, 0] + 1, seeds[:, 1] + 1] = climbed
+    _spread(
+        passable.ravel(),
+        cols + 2,
+        distance.ravel(),
+        _factors(clearance_m, clearance_weight, comfort_m),
+        (seeds + 1) @ np.array([cols + 2, 1]),
+        math.ceil(_DIAGONAL * (1.0 + clearance_weight)) + 2,
+    )
+    field = np.multiply(distance[1:-1, 1:-1], resolution_m, dtype=np.float32, casting="same_kind")
+    field[starts[:, 0], starts[:, 1]] = 0.0
+    return field
+
+
+def nearest_reaching_cell(
+    travel_m: NDArray[np.float32], cell: tuple[int, int], within_cells: float = math.inf
+) -> tuple[int, int] | None:
+    """The reachable cell nearest to a given one, as the crow flies.
+
+    Ties go to the shorter travel, then to the lower row and column.
+
+    Args:
+        travel_m: (rows, cols) float32, as from :func:`travel_field`.
+        cell: (row, col), may lie outside the grid.
+        within_cells: how far to look, in cells.
+
+    Returns:
+        (row, col), or None where no cell that near can be reached.
+    """
+    reach = min(within_cells, float(np.hypot(*travel_m.shape)) + math.hypot(*cell))
+    row0, col0 = (max(0, math.floor(c - reach)) for c in cell)
+    window = travel_m[
+        row0 : max(0, math.ceil(cell[0] + reach) + 1), col0 : max(0, math.ceil(cell[1] + reach) + 1)
+    ]
+    rows, cols = np.nonzero(np.isfinite(window))
+    square = (rows + row0 - cell[0]) ** 2 + (cols + col0 - cell[1]) ** 2
+    near = np.flatnonzero(square <= reach**2)
+    if near.size == 0:
+        return None
+    best = near[np.lexsort((travel_m[rows[near] + row0, cols[near] + col0], square[near]))[0]]
+    return (int(rows[best] + row0), int(cols[best] + col0))

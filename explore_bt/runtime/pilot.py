@@ -99,10 +99,10 @@ class Pilot:
 
 
 def _unfit_to_drive(estimate: Estimate, scan: Scan2D | None, now_s: float) -> str:
+    if estimate.health is Health.LOST:
+        return f"SLAM is lost: {estimate.reason}"
     if scan is None:
         return "no scan yet"
     if (age_s := now_s - scan.stamp_s) > STALE_SCAN_S:
         return f"the newest scan is {age_s:.1f} s old"
-    if estimate.health is Health.LOST:
-        return f"SLAM is lost: {estimate.reason}"
     return ""

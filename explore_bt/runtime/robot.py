@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
+from explore_bt.exploration import warm_up
 from explore_bt.interfaces import Event, MapView, NodeState, RobotContext, RobotSnapshot
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.pilot import Pilot
@@ -65,6 +66,7 @@ class Robot:
         )
         self.home = self.driver.start
         self.slam.setup(context)
+        warm_up()
         self._planner.setup(context)
         self._controller.setup(context)
         gate = SafetyGate(self.driver.footprint_radius_m, limits)
@@ -140,8 +142,6 @@ class Robot:
         """Take in what the driver measured since the last time."""
         measurements = self._guarded("driver", self.driver.read, ())
         for measurement in measurements:
-            if self._slam_fault:
-                break
             self._take(measurement)
         if any(isinstance(measurement, Scan2D) for measurement in measurements):
             self._show_gate()
@@ -206,6 +206,8 @@ class Robot:
     def _take(self, measurement: Measurement) -> None:
         if isinstance(measurement, Scan2D):
             self._scan = measurement
+        if self._slam_fault:
+            return
         try:
             self.slam.update(measurement)
         except Exception as error:  # a SLAM that raises is lost: the gate brakes, the reason is recorded

@@ -122,7 +122,7 @@ def test_a_waypoint_in_an_obstacle_is_refused_unless_a_shorter_stride_fits() -> 
     robot, board = FakeRobot(OccupancyGrid(cells, 0.1, grid.origin_xy)), Blackboard()
     literal = leaf(robot, board)
     literal.tick_once()
-    assert "clear at the waypoint, needs 0.28 m" in literal.feedback_message
+    assert "clear at the waypoint, needs 0.27 m" in literal.feedback_message
     shorter = leaf(robot, board, min_stride=0.6)
     shorter.tick_once()
     assert shorter.status is Status.SUCCESS

@@ -51,7 +51,7 @@ def test_a_place_given_up_is_not_chosen_again_and_in_the_end_named() -> None:
 def test_a_fully_known_room_leaves_nothing_and_says_so() -> None:
     leaf = find_in(two_rooms(0))
     assert leaf.status is Status.FAILURE
-    assert leaf.reason == "no reachable frontier shows enough new area"
+    assert leaf.reason == "no reachable frontier shows 0.10 m² of new area or more"
     assert leaf.left_open == ()
 
 

@@ -11,12 +11,13 @@ from explore_bt.behaviours import (
     StopRequested,
     Turn,
     Wait,
+    WaitUntilLocalised,
     WatchProgress,
 )
 from explore_bt.interfaces import ControlStatus
 from explore_bt.testing.fake_robot import FakeRobot, open_floor
 from explore_bt.tree import Blackboard, Leaf, Status
-from explore_bt.types import FREE, UNKNOWN, OccupancyGrid, Pose2, Waypoint
+from explore_bt.types import FREE, UNKNOWN, Estimate, Health, OccupancyGrid, Pose2, Waypoint
 
 
 @pytest.fixture
@@ -126,3 +127,16 @@ def test_new_floor_is_progress(robot: FakeRobot, board: Blackboard) -> None:
         robot.grid = floor_of(1000 + 30 * k)
         leaf.tick_once()
         assert leaf.status is Status.SUCCESS
+
+
+def test_a_lost_slam_is_waited_for_and_then_given_up(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = WaitUntilLocalised("localised", robot, board, {"patience": 2.0})
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+    robot.estimate = lambda: Estimate(0.0, robot.pose, health=Health.LOST, reason="few inliers")
+    statuses = []
+    for robot.time_s in (1.0, 2.0, 3.5):
+        leaf.tick_once()
+        statuses.append(leaf.status)
+    assert statuses == [Status.RUNNING, Status.RUNNING, Status.FAILURE]
+    assert "few inliers" in leaf.feedback_message

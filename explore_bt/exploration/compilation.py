@@ -1,0 +1,29 @@
+"""Compilation of every kernel ahead of time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from explore_bt.exploration.choice import choose_viewpoints
+from explore_bt.exploration.clearance import clearance_field
+from explore_bt.exploration.frontier import find_frontiers
+from explore_bt.exploration.travel import travel_field
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+
+__all__ = ["warm_up"]
+
+
+def warm_up() -> None:
+    """Compile all kernels, or load them from numba's cache; call at set-up, never while driving.
+
+    It solves a small map: a room with an opening to the unknown, and one behind a gap too narrow.
+    """
+    cells = np.full((24, 40), UNKNOWN, dtype=np.int8)
+    cells[2:22, 2:38] = FREE
+    cells[:, 20] = OCCUPIED
+    cells[11, 20] = FREE
+    grid = OccupancyGrid(cells, 0.1, (0.0, 0.0))
+    clearance_m = clearance_field(grid)
+    for weight in (0.0, 1.0):
+        travel_m = travel_field(clearance_m, (12, 10), 0.2, grid.resolution_m, clearance_weight=weight)
+    choose_viewpoints(grid, clearance_m, travel_m, find_frontiers(grid), 1.2, radius_m=0.2)
