@@ -6,13 +6,13 @@ from typing import Annotated
 
 import typer
 
-from explore_bt.version import __version__
 from explore_bt.cli.check import check
 from explore_bt.cli.new_plugin import new_plugin
 from explore_bt.cli.plugins import plugins
 from explore_bt.cli.run import run
 from explore_bt.cli.schema import schema
 from explore_bt.cli.show import show
+from explore_bt.version import __version__
 
 __all__ = ["app", "main"]
 
@@ -49,7 +49,7 @@ def _show_version(wanted: bool) -> None:
 @app.callback(invoke_without_command=True)
 def start(
     context: typer.Context,
-    version: Annotated[
+    version: Annotated[  # noqa: ARG001  # its callback does the work
         bool, typer.Option("--version", is_eager=True, callback=_show_version, help="Say the version.")
     ] = False,
 ) -> None:

@@ -43,21 +43,28 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except KeyboardInterrupt:
             raise typer.Exit(STOPPED) from None
         except Crash as crash:
-            raise _apologise(crash.__cause__ or crash, crash.folder) from None
+            folder = crash.folder if crash.folder.is_dir() else _elsewhere()
+            raise _apologise(crash.__cause__ or crash, folder) from None
         except (typer.Exit, typer.Abort, BrokenPipeError):
             raise
         except Exception as fault:
-            raise _apologise(fault, Path(tempfile.mkdtemp(prefix="explore-bt-"))) from None
+            raise _apologise(fault, _elsewhere()) from None
 
     return guarded_command
 
 
 def _apologise(fault: BaseException, folder: Path) -> typer.Exit:
     log = folder / "crash.log"
-    folder.mkdir(parents=True, exist_ok=True)
     log.write_text(_report(fault))
-    _say(f"Sorry, explore-bt itself failed ({type(fault).__name__}: {fault}).\nPlease report it with {log}")
+    _say(
+        f"Sorry, explore-bt itself failed ({type(fault).__name__}: {fault}).\n"
+        f"Please report it to the project, with {log}"
+    )
     return typer.Exit(FAILED)
+
+
+def _elsewhere() -> Path:
+    return Path(tempfile.mkdtemp(prefix="explore-bt-"))
 
 
 def _report(fault: BaseException) -> str:

@@ -6,6 +6,7 @@ import types
 import typing
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from pydantic.fields import FieldInfo
@@ -15,6 +16,12 @@ from explore_bt.tree import REQUIRED, Key, Leaf
 from explore_bt.units import ANGLE, Dimension, PoseTriple
 
 __all__ = ["Option", "options_of"]
+
+_NAMES: dict[Any, str] = {
+    typing.get_args(PoseTriple)[0]: "pose [x, y, heading]",
+    Path: "file",
+    type(None): "none",
+}
 
 _DEG_PER_RAD = 1.0 / ANGLE.factors[1][1]
 
@@ -50,33 +57,33 @@ def _outputs(leaf: type[Leaf]) -> Iterator[Option]:
 
 def _of_field(name: str, field: FieldInfo) -> Option:
     # pydantic takes Annotated apart; in a union (Length | None) it stays inside the annotation
-    dimension = _dimension(field.metadata) or _dimension_inside(field.annotation)
+    dimension = _dimension(field.metadata)
     default = REQUIRED if field.is_required() else field.get_default(call_default_factory=True)
-    return Option(name, _type(field.annotation, dimension), _default(default, dimension), field.description or "")
+    shown = _default(default, dimension or _dimension_inside(field.annotation))
+    return Option(name, _type(field.annotation, dimension), shown, field.description or "")
 
 
 def _dimension(metadata: Sequence[object]) -> Dimension | None:
     return next((each for each in metadata if isinstance(each, Dimension)), None)
 
 
-def _dimension_inside(annotation: object) -> Dimension | None:
-    inside = typing.get_args(annotation)
-    found = (_dimension(typing.get_args(each)) for each in inside)
-    return _dimension(inside) or next((each for each in found if each), None)
+def _dimension_inside(union: object) -> Dimension | None:
+    found = (_dimension(typing.get_args(each)) for each in typing.get_args(union))
+    return next((each for each in found if each), None)
 
 
 def _type(annotation: Any, dimension: Dimension | None) -> str:  # a type form; there is no type for those
-    if dimension is not None:
-        return dimension.name
-    if annotation == PoseTriple or annotation == typing.get_args(PoseTriple)[0]:
-        return "pose [x, y, heading]"
     origin, inside = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is typing.Annotated:
-        return _type(inside[0], None)
+        return _type(inside[0], _dimension(inside))
+    if dimension is not None:
+        return dimension.name
+    if annotation in _NAMES:
+        return _NAMES[annotation]
     if origin is typing.Literal:
         return " | ".join(str(value) for value in inside)
     if origin in (typing.Union, types.UnionType):
-        return " or ".join("none" if each is type(None) else _type(each, None) for each in inside)
+        return " or ".join(_type(each, None) for each in inside)
     return getattr(annotation, "__name__", str(annotation))
 
 

@@ -30,13 +30,18 @@ def find_mission(text: str) -> Path:
         return path
     shipped = shipped_missions()
     if text in shipped:
-        return shipped[text]
+        return _short(shipped[text])
     if path.is_dir():
         raise UserError(f"{text} is a folder; name a mission file in it")
     close = difflib.get_close_matches(path.stem, shipped, n=1)
     hint = f'did you mean "{close[0]}"? ' if close else ""
     names = ", ".join(shipped) if shipped else "none"
     raise UserError(f"there is no mission {text}; {hint}Shipped missions: {names}")
+
+
+def _short(path: Path) -> Path:
+    """As a person here would write it."""
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
 
 
 def new_run_folder(out: Path | None, mission: str) -> Path:
@@ -49,7 +54,9 @@ def new_run_folder(out: Path | None, mission: str) -> Path:
     if folder.is_file():
         raise UserError(f"{folder} is a file; name a new folder with --out")
     if folder.is_dir() and any(folder.iterdir()):
-        raise UserError(f"{folder} is not empty; a run never overwrites another, name a new folder with --out")
+        raise UserError(
+            f"{folder} is not empty; a run never overwrites another, name a new folder with --out"
+        )
     return folder
 
 

@@ -20,7 +20,9 @@ __all__ = ["plugins"]
 
 @guarded
 def plugins(
-    kind: Annotated[str | None, typer.Option(help="Only this kind: driver, slam, planner, ...")] = None,
+    kind: Annotated[
+        str | None, typer.Option(metavar="KIND", help="Only this kind: driver, slam, planner, ...")
+    ] = None,
     options: Annotated[
         bool, typer.Option("--options", help="With options or ports, units and defaults.")
     ] = False,
@@ -28,7 +30,10 @@ def plugins(
         Path, typer.Option(metavar="FOLDER", help="Where to look for explore_bt_inline.py.")
     ] = Path(),
 ) -> None:
-    """List what a mission can use: kind, name, version, origin; and what could not be loaded."""
+    """List the plugins that a mission can use.
+
+    A plugin that could not be loaded is named below the table, with the reason.
+    """
     from explore_bt.plugin import KINDS, load_plugins
 
     if kind is not None and kind not in KINDS:
@@ -50,7 +55,11 @@ def _console() -> Console:
 
     # in a pipe nothing is cut off: one plugin, one line
     console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=max(200, shutil.get_terminal_size().columns))
+    return (
+        console
+        if console.is_terminal
+        else Console(highlight=False, width=max(200, shutil.get_terminal_size().columns))
+    )
 
 
 def _show_table(entries: list[Entry], console: Console) -> None:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from explore_bt.cli.guard import DONE, FAILED, STOPPED, Crash, guarded
-from explore_bt.cli.overrides import parse_overrides
-from explore_bt.cli.places import find_mission, new_run_folder
+from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
+from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
 from explore_bt.cli.stopping import stopping_by_signal
 from explore_bt.cli.summary import summary_lines
@@ -27,40 +28,42 @@ __all__ = ["run"]
 
 @guarded
 def run(
-    mission: Annotated[str, typer.Argument(help="A mission file, or the name of a shipped mission.")],
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated.")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of every random draw; the same seed, the same run.")] = 0,
+    mission: MissionArgument,
+    set_: SetOption = None,
+    seed: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Seed of every random draw; the same seed, the same run.")
+    ] = 0,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the results, new or empty; else runs/<mission>-<time>.")
+        Path | None,
+        typer.Option(metavar="DIR", help="Folder for the results, new or empty; else runs/<mission>-<time>."),
     ] = None,
-    headless: Annotated[bool, typer.Option("--headless", help="No live view, a line every ten seconds.")] = False,
+    headless: Annotated[
+        bool, typer.Option("--headless", help="No live view, a line every ten seconds.")
+    ] = False,
+    sink: Annotated[
+        list[str] | None, typer.Option("--sink", metavar="NAME", help="One more observer; may be repeated.")
+    ] = None,
     verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Show the log.")] = False,
 ) -> None:
-    """Run a mission and leave its map, trajectory, recording and report in a folder.
+    """Run a mission; map, recording and report land in a folder.
 
     Exit code: 0 explored, 1 failed or budget spent, 2 wrong input, 130 stopped by hand.
     Ctrl-C stops the robot safely and saves the results.
     """
-    from explore_bt.mission import load_mission
-    from explore_bt.plugin import load_plugins
-
-    path, overrides = find_mission(mission), parse_overrides(set_ or ())
-    registry = load_plugins(inline_dir=path.parent).registry
-    checked = load_mission(path, registry, overrides)
-    folder = new_run_folder(out, path.stem)
+    checked, registry = load_checked(mission, set_)
+    folder = new_run_folder(out, checked.path.stem)
+    sinks = _sinks(registry, sink or (), live=not headless and sys.stdout.isatty())
+    typer.echo(f"{checked.path}, seed {seed}: getting ready (the first time takes longer, it compiles)")
     with run_log(folder / "run.log", verbose=verbose):
-        result = _drive(checked, registry, folder, seed, live=not headless and sys.stdout.isatty())
+        result = _drive(checked, registry, folder, seed, sinks)
     _show(result, folder)
     raise typer.Exit(_exit_code(result.outcome))
 
 
-def _drive(mission: Mission, registry: Registry, folder: Path, seed: int, *, live: bool) -> Result:
+def _drive(mission: Mission, registry: Registry, folder: Path, seed: int, sinks: Sequence[Sink]) -> Result:
     from explore_bt.runtime import StopFlag, run_mission
 
     stop = StopFlag()
-    sinks = _sinks(registry, live=live)
     with stopping_by_signal(stop):
         try:
             return run_mission(mission, registry=registry, out=folder, seed=seed, sinks=sinks, stop=stop)
@@ -70,11 +73,9 @@ def _drive(mission: Mission, registry: Registry, folder: Path, seed: int, *, liv
             raise Crash(folder) from fault
 
 
-def _sinks(registry: Registry, *, live: bool) -> list[Sink]:
-    from explore_bt.cli.progress import Progress
-
-    shown: type[Sink] = registry.get("sink", "terminal") if live else Progress
-    classes: list[type[Sink]] = [registry.get("sink", "mcap"), registry.get("sink", "report"), shown]
+def _sinks(registry: Registry, more: Sequence[str], *, live: bool) -> list[Sink]:
+    names = ["mcap", "report", "terminal" if live else "progress", *more]
+    classes: list[type[Sink]] = [registry.get("sink", name) for name in dict.fromkeys(names)]
     return [sink(sink.Options()) for sink in classes]
 
 

@@ -17,13 +17,21 @@ __all__ = ["schema"]
 
 @guarded
 def schema(
-    out: Annotated[Path | None, typer.Option(help="A file to write; else it is printed.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A file to write; else it is printed.")
+    ] = None,
+    folder: Annotated[
+        Path, typer.Option(metavar="FOLDER", help="Where to look for explore_bt_inline.py.")
+    ] = Path(),
 ) -> None:
-    """Print the JSON Schema of missions, made from the installed plugins, for your editor."""
+    """Print the JSON Schema of missions, for your editor.
+
+    It is made from the installed plugins: completion knows their options, units and defaults.
+    """
     from explore_bt.mission import mission_schema
     from explore_bt.plugin import load_plugins
 
-    text = json.dumps(mission_schema(load_plugins().registry), indent=2) + "\n"
+    text = json.dumps(mission_schema(load_plugins(inline_dir=folder).registry), indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)
         return

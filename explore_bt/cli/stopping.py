@@ -23,7 +23,7 @@ _NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
 def stopping_by_signal(stop: StopFlag) -> Iterator[None]:
     """While inside, the two signals raise ``stop`` instead of ending the program."""
 
-    def on_signal(number: int, frame: FrameType | None) -> None:
+    def on_signal(number: int, _frame: FrameType | None) -> None:
         # os.write: print is not safe in a handler, the interrupted code may be printing
         os.write(2, _AGAIN if stop.is_raised else _FIRST)
         stop.raise_flag(f"stopped by hand ({_NAMES[signal.Signals(number)]})")

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["summary_lines"]
 
+_MOST = 3
 _FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", "recording.mcap"))
 
 
@@ -19,9 +20,15 @@ def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:
     """Label and text of each line; figures that nobody knows are left out."""
     lines = [(str(result.outcome), " · ".join(_figures(result)))]
     lines += [("reason", result.reason)] if result.reason else []
-    lines += [("left open", sentence) for sentence in result.left_open]
+    lines += [("left open", sentence) for sentence in _first(result.left_open)]
     lines += [(label, str(path)) for label, name in _FILES for path in _files(folder, name)]
     return lines
+
+
+def _first(sentences: tuple[str, ...]) -> list[str]:
+    """A handful; all of them are in result.json."""
+    rest = len(sentences) - _MOST
+    return [*sentences[:_MOST], *([f"and {rest} more, see result.json"] if rest > 0 else [])]
 
 
 def _files(folder: Path, name: str) -> list[Path]:

@@ -1,0 +1,49 @@
+"""From what a person typed to a checked mission; used by every command that takes one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from explore_bt.cli.places import find_mission
+from explore_bt.errors import MissionError
+
+if TYPE_CHECKING:
+    from explore_bt.mission import Mission
+    from explore_bt.plugin import Host, Registry
+
+__all__ = ["MissionArgument", "SetOption", "load_checked"]
+
+MissionArgument = Annotated[
+    str, typer.Argument(metavar="MISSION", help="A mission file, or the name of a shipped mission.")
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
+]
+
+
+def load_checked(mission: str, settings: Sequence[str] | None) -> tuple[Mission, Registry]:
+    """Find the mission, load the plugins and the file beside it, check everything.
+
+    Raises:
+        UserError: no such mission, a broken inline plugin, or the mission's faults, all of them.
+    """
+    path = find_mission(mission)
+    from explore_bt.mission import load_mission
+    from explore_bt.plugin import load_plugins
+
+    host = load_plugins(inline_dir=path.parent)
+    try:
+        return load_mission(path, host.registry, settings or ()), host.registry
+    except MissionError as faulty:
+        raise MissionError(str(faulty) + _left_out(faulty, host), faulty.faults) from None
+
+
+def _left_out(faulty: MissionError, host: Host) -> str:
+    """Where a plugin is missing, those that could not be loaded may be the reason."""
+    if not any("explore-bt plugins" in fault.hint for fault in faulty.faults):
+        return ""
+    return "".join(f"\nleft out: {each.name}, {each.origin}: {each.reason}" for each in host.broken)
