@@ -104,10 +104,12 @@ def _read_header(file: MarkedFile) -> _Header:
     negate = _negate(file, keys.get("negate"))
     _check_mode(file, keys.get("mode"))
     file.raise_faults()
-    assert image and resolution and origin and occupied is not None and free is not None
-    return _Header(
-        file.path.parent / image, resolution, (origin[0], origin[1]), negate, occupied, free
-    )
+    assert image is not None
+    assert resolution is not None
+    assert origin is not None
+    assert occupied is not None
+    assert free is not None
+    return _Header(file.path.parent / image, resolution, (origin[0], origin[1]), negate, occupied, free)
 
 
 def _negate(file: MarkedFile, node: yaml.Node | None) -> bool:

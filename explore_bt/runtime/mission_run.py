@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,6 +20,8 @@ from explore_bt.types import Result
 from explore_bt.version import __version__
 
 __all__ = ["run_mission"]
+
+_log = logging.getLogger("explore_bt")
 
 LEFT_OPEN_KEY = "left_open"
 """Blackboard entry in which a tree lists what it could not explore, one sentence each."""
@@ -122,4 +125,7 @@ def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Pa
         )
         for name in registry.names("exporter"):
             make: type[Exporter] = registry.get("exporter", name)
-            make(make.Options()).export(product, folder)
+            try:
+                make(make.Options()).export(product, folder)
+            except Exception:  # one format that cannot be written must not cost the others
+                _log.exception("exporter %s wrote nothing", name)

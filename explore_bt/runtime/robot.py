@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -15,12 +16,16 @@ from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
 from explore_bt.runtime.stop_flag import StopFlag
-from explore_bt.tree import Blackboard, PortUnsetError, Status
+from explore_bt.tree import Blackboard, PortUnsetError, Status, halt
 from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D
 
 __all__ = ["Robot"]
 
 DEFAULT_LIDAR_RANGE_M = 5.0
+REASON_KEY = "reason"
+"""Blackboard entry in which a tree may say why it ended."""
+
+_log = logging.getLogger("explore_bt")
 
 
 class Robot:
@@ -162,15 +167,18 @@ class Robot:
         """Tick the tree once."""
         try:
             self.tree.root.tick_once()
-        except PortUnsetError as error:
-            self.tell("error", "tree", str(error))
-            self.tree.root.stop(Status.FAILURE)
+        except Exception as error:  # a leaf is a plugin too: its failure ends the mission, not the process
+            reason = str(error) if isinstance(error, PortUnsetError) else repr(error)
+            self.blackboard.write(REASON_KEY, f"a leaf failed: {reason}")
+            self.tell("error", "tree", reason)
+            _log.exception("robot %s: a leaf raised", self.name)
+            halt(self.tree.root)
+            return Status.FAILURE
         return self.tree.root.status
 
     def rest(self) -> None:
         """Cut the tree off and come to rest."""
-        if self.tree.root.status is Status.RUNNING:
-            self.tree.root.stop(Status.INVALID)
+        halt(self.tree.root)
         self.pilot.hold()
 
     def close(self) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from explore_bt.interfaces import Event, TickSnapshot
 from explore_bt.mission import Mission
 from explore_bt.runtime.observers import Observers
-from explore_bt.runtime.robot import Robot
+from explore_bt.runtime.robot import REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.tree import Status
 from explore_bt.types import Outcome
@@ -17,8 +17,6 @@ __all__ = ["Runner"]
 
 FIRST_SCAN_TIMEOUT_S = 5.0
 REST_TIMEOUT_S = 5.0
-REASON_KEY = "reason"
-"""Blackboard entry in which a tree may say why it ended."""
 
 
 class _Phase(enum.Enum):

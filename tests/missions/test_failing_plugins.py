@@ -19,6 +19,7 @@ from explore_bt.interfaces import (
 from explore_bt.mission import load_mission
 from explore_bt.plugin import Registry, load_plugins
 from explore_bt.runtime import StopFlag, run_mission
+from explore_bt.tree import Leaf
 from explore_bt.types import Health, Measurement, Result, Scan2D
 
 from .conftest import MISSIONS
@@ -125,6 +126,27 @@ def test_a_lidar_that_falls_silent_stops_the_robot_within_its_staleness(tmp_path
     moving = [tick.stamp_s for tick in watcher.ticks if abs(tick.robots[0].motion.twist.linear_mps) > 0.01]
     assert max(moving) < 8.0
     assert any("the newest scan is 0." in tick.robots[0].gate_reason for tick in watcher.ticks)
+
+
+def test_a_leaf_that_raises_ends_the_mission_at_rest_with_its_reason(tmp_path: Path) -> None:
+    base: type[Leaf] = built_in("behaviour", "record_waypoint")
+    broken = type("Broken", (base,), {"type_key": "broken", "update": after(1, base.update)})
+    broken.name = "broken"
+    registry = load_plugins().registry
+    registry.add(broken, "the test")
+    trees = (MISSIONS / "trees/complete.yaml").read_text().replace("record_waypoint", "broken")
+    (tmp_path / "trees").mkdir()
+    (tmp_path / "trees/complete.yaml").write_text(trees)
+    text = (MISSIONS / "00_room.yaml").read_text().replace("worlds/", f"{MISSIONS}/worlds/")
+    (tmp_path / "mission.yaml").write_text(text)
+    mission = load_mission(tmp_path / "mission.yaml", registry, ["slam=ground_truth"])
+    watcher = Watcher()
+    result = run_mission(
+        mission, registry=registry, out=tmp_path / "run", seed=0, sinks=[watcher], stop=StopFlag()
+    )
+    assert result.reason == "a leaf failed: RuntimeError('cable pulled')"
+    assert abs(watcher.ticks[-1].robots[0].motion.twist.linear_mps) < 1e-3
+    assert (tmp_path / "run/result.json").exists()
 
 
 def test_a_driver_that_never_scans_is_named(tmp_path: Path) -> None:

@@ -1,0 +1,106 @@
+"""Driver ``sim2d``: a robot simulated in the plane, the embedded default."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from explore_bt.clock import Clock
+from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, RobotContext
+from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt_drivers.sim2d.options import Sim2dOptions
+from explore_bt_drivers.sim2d.simulation import Simulation
+from explore_bt_drivers.sim2d.start import choose_start
+from explore_bt_drivers.sim2d.truth import Sim2dTruth
+from explore_bt_drivers.world import load_world, observable_floor
+
+__all__ = ["Sim2d"]
+
+_WARM_UP_S = 0.2
+
+
+class Sim2d(Driver):
+    """A round robot with lidar, IMU and slipping wheels in a drawn world or a ROS map.
+
+    The ``map`` frame is the world's own. Time passes only while someone waits on the clock; the same
+    world, options, seed and commands give the same measurements, bit for bit.
+    """
+
+    name = "sim2d"
+    api_version = API_VERSION
+    Options: ClassVar[type[PluginOptions]] = Sim2dOptions
+
+    def __init__(self, options: PluginOptions) -> None:
+        super().__init__(options)
+        assert isinstance(options, Sim2dOptions)
+        self._options = options
+        self._simulation: Simulation | None = None
+        self._truth: Sim2dTruth | None = None
+        self._start: Pose2 | None = None
+        self._closed = False
+
+    def setup(self, context: RobotContext) -> None:
+        """Load the world, place the robot, compile the kernels.
+
+        Raises:
+            WorldError: a world that cannot be used, or a start inside an obstacle.
+        """
+        options = self._options
+        world = load_world(options.world)
+        self._start = choose_start(world, context.start, options.radius)
+        rehearsal = Simulation(world, options, self._start, context)
+        rehearsal.body.command(Twist2(0.1, 0.1))
+        rehearsal.wait_until(_WARM_UP_S)
+        observable_floor(world, self._start.xy, options.radius, 0.0)
+        self._simulation = Simulation(world, options, self._start, context)
+        self._truth = Sim2dTruth(world, self._simulation.body, options.radius, options.lidar_range)
+
+    @property
+    def clock(self) -> Clock:
+        """Simulated time: waiting on it moves the robot."""
+        return self._running()
+
+    @property
+    def footprint_radius_m(self) -> float:
+        """Radius of the circular footprint."""
+        return self._options.radius
+
+    @property
+    def limits(self) -> MotionLimits:
+        """What the simulated body can do."""
+        return self._options.limits
+
+    @property
+    def start(self) -> Pose2:
+        """As given, or as the world's file says, or the widest free spot."""
+        self._running()
+        assert self._start is not None
+        return self._start
+
+    def read(self) -> Sequence[Measurement]:
+        """Everything measured while the clock was waited on since the last call."""
+        return self._running().drain()
+
+    def command(self, twist: Twist2) -> None:
+        """Drive at this twist, as far as the limits allow, for at most 0.5 s."""
+        if not self._closed:
+            self._running().body.command(twist)
+
+    def stop(self) -> None:
+        """Brake at the limits and stand until the next command; from any thread."""
+        if self._simulation is not None:
+            self._simulation.body.halt()
+
+    def close(self) -> None:
+        """Stop; later commands are not heard."""
+        self.stop()
+        self._closed = True
+
+    def truth(self) -> GroundTruth | None:
+        """Pose, contacts, clearance and the floor that can be explored."""
+        return self._truth
+
+    def _running(self) -> Simulation:
+        if self._simulation is None:
+            raise RuntimeError("sim2d is used before setup()")
+        return self._simulation

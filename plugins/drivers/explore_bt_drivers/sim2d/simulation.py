@@ -1,0 +1,53 @@
+"""One robot in a world on a clock of its own making."""
+
+from __future__ import annotations
+
+import math
+
+from explore_bt.clock import ManualClock
+from explore_bt.interfaces import RobotContext
+from explore_bt.types import Measurement, Pose2
+from explore_bt_drivers.sim2d.body import Body
+from explore_bt_drivers.sim2d.imu import InertialUnit
+from explore_bt_drivers.sim2d.lidar import Lidar
+from explore_bt_drivers.sim2d.motion import ON_STEP, STEP_S
+from explore_bt_drivers.sim2d.odometry import Wheels
+from explore_bt_drivers.sim2d.options import Sim2dOptions
+from explore_bt_drivers.world import World
+
+__all__ = ["Simulation"]
+
+_CHUNK_STEPS = 100
+
+
+class Simulation(ManualClock):
+    """Time, body and sensors: waiting moves the body on and queues what the sensors measure.
+
+    The body moves in steps of ``STEP_S`` counted from 0, so that the same commands at the same times give
+    the same states however the waiting is cut up.
+    """
+
+    def __init__(self, world: World, options: Sim2dOptions, start: Pose2, context: RobotContext) -> None:
+        super().__init__()
+        self.body = Body(world, start, options.radius, options.limits)
+        self._sensors = (
+            InertialUnit(options, context.rng("imu")),
+            Wheels(options, start, context.rng("wheels")),
+            Lidar(world, options, context.rng("lidar"), context.rng("lidar dropout")),
+        )
+        self._queue: list[Measurement] = []
+
+    def wait_until(self, time_s: float) -> None:
+        """Advance the world to ``time_s``."""
+        super().wait_until(time_s)
+        last_step = math.floor(self.now_s() / STEP_S + ON_STEP)
+        while self.body.track.last_step < last_step:
+            self.body.advance(min(last_step, self.body.track.last_step + _CHUNK_STEPS))
+            fresh = [found for sensor in self._sensors for found in sensor.measure(self.body.track)]
+            fresh.sort(key=lambda measurement: measurement.stamp_s)
+            self._queue += fresh
+
+    def drain(self) -> list[Measurement]:
+        """Everything measured since the last call, in time order."""
+        measured, self._queue = self._queue, []
+        return measured

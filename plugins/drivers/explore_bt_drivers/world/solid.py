@@ -1,0 +1,85 @@
+"""What a world file describes: solids on the floor, and the edge of the world."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Pose2
+
+__all__ = ["Solid", "WorldPlan", "box_corners", "circle_corners", "crossing_edges", "signed_area"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solid:
+    """A prism standing on the floor.
+
+    Attributes:
+        name: as people call it ("sofa", "wall of kitchen").
+        corners: (N, 2) float64, metres, world frame, counter-clockwise, N >= 3, edges do not cross.
+        height_m: from the floor up; the planar simulator takes everything for higher than its lidar.
+    """
+
+    name: str
+    corners: NDArray[np.float64]
+    height_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class WorldPlan:
+    """A world as drawn.
+
+    Attributes:
+        bounds: x0, y0, x1, y1 in metres; the world ends there, its edge is solid.
+        start: where the robot begins unless the mission says otherwise.
+    """
+
+    name: str
+    solids: tuple[Solid, ...]
+    bounds: tuple[float, float, float, float]
+    start: Pose2 | None
+
+
+def box_corners(x0: float, y0: float, x1: float, y1: float, turn_rad: float = 0.0) -> NDArray[np.float64]:
+    """(4, 2) counter-clockwise corners of a rectangle, turned about its centre."""
+    x0, x1, y0, y1 = min(x0, x1), max(x0, x1), min(y0, y1), max(y0, y1)
+    half_w, half_h = (x1 - x0) / 2, (y1 - y0) / 2
+    square = np.array([(-half_w, -half_h), (half_w, -half_h), (half_w, half_h), (-half_w, half_h)])
+    return Pose2((x0 + x1) / 2, (y0 + y1) / 2, turn_rad).apply(square)
+
+
+def circle_corners(x: float, y: float, radius_m: float, count: int = 32) -> NDArray[np.float64]:
+    """(count, 2) counter-clockwise corners on a circle."""
+    angles = np.arange(count) * (2.0 * math.pi / count)
+    return np.column_stack((x + radius_m * np.cos(angles), y + radius_m * np.sin(angles)))
+
+
+def signed_area(corners: NDArray[np.float64]) -> float:
+    """Area of a simple polygon, m²; positive when its corners run counter-clockwise."""
+    x, y = corners.T
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2.0
+
+
+def crossing_edges(corners: NDArray[np.float64]) -> tuple[int, int] | None:
+    """Two edges (by the number of their first corner, from 1) that cross each other, or None."""
+    following = np.roll(corners, -1, axis=0)
+    count = len(corners)
+    for i in range(count):
+        for j in range(i + 2, count):
+            neighbours = i == 0 and j == count - 1
+            if not neighbours and _cross(corners[i], following[i], corners[j], following[j]):
+                return (i + 1, j + 1)
+    return None
+
+
+def _cross(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64]
+) -> bool:
+    return _side(a, b, c) * _side(a, b, d) < 0.0 and _side(c, d, a) * _side(c, d, b) < 0.0
+
+
+def _side(a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]) -> float:
+    return float((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]))
