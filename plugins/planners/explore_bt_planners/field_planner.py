@@ -1,0 +1,165 @@
+"""What all planners on a clearance field share: ends, connectivity, shortcuts, smoothing, the path."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from explore_bt.errors import Cancelled, NoPath
+from explore_bt.interfaces import Planner, PluginOptions, RobotContext, never
+from explore_bt.types import OccupancyGrid, Path, Pose2
+from explore_bt.units import Length
+from explore_bt_planners.bottleneck import widest_squared
+from explore_bt_planners.endpoints import Departure, depart, settle
+from explore_bt_planners.polyline import without_repeats
+from explore_bt_planners.sampling import clearances_at, segment_clearance
+from explore_bt_planners.search import ClearancePrice
+from explore_bt_planners.shortcut import take_shortcuts
+from explore_bt_planners.smoothing import ClearanceFloor, smooth
+from explore_bt_planners.terrain import SLACK_M, Terrain, TerrainCache
+from explore_bt_planners.warm_up import practice_grid
+
+__all__ = ["FieldPlanner", "FieldPlannerOptions"]
+
+_POSE_SPACING_M = 0.1
+_LINE_SPACING_M = 0.3
+_LINE_REACH_M = 6.0
+_SAME_PLACE_M = 0.02
+
+
+class FieldPlannerOptions(PluginOptions):
+    """Options of every planner on a clearance field."""
+
+    margin: Length = Field(0.02, ge=0.0, description="clearance kept on top of the footprint's radius")
+    goal_tolerance: Length = Field(
+        0.3,
+        ge=0.0,
+        description="how far a goal too close to an obstacle may be moved to where the robot fits",
+    )
+    leave_within: Length = Field(
+        0.6, ge=0.0, description="how far a start too close to an obstacle may be from where the robot fits"
+    )
+
+
+class FieldPlanner(Planner):
+    """Plans on the exact clearance of a map; subclasses say by which cells."""
+
+    def __init__(self, options: FieldPlannerOptions, separation: float = 1.7) -> None:
+        super().__init__(options)
+        self._options = options
+        self._terrains = TerrainCache(separation)
+
+    def setup(self, context: RobotContext) -> None:
+        """Compile every kernel on a practice map."""
+        grid, start, goal = practice_grid(context.footprint_radius_m + self._options.margin)
+        self.plan(grid, start, goal, context.footprint_radius_m)
+
+    def plan(
+        self,
+        grid: OccupancyGrid,
+        start: Pose2,
+        goal: Pose2,
+        footprint_radius_m: float,
+        cancelled: Callable[[], bool] = never,
+    ) -> Path:
+        """See ``Planner.plan``."""
+        if cancelled():
+            raise Cancelled("the plan was cancelled by its caller")
+        terrain = self._terrains.terrain(grid, footprint_radius_m + self._options.margin)
+        departure = depart(terrain, start, footprint_radius_m, self._options.leave_within)
+        arrival, goal_cell = settle(terrain, goal, self._options.goal_tolerance)
+        self._check_connected(terrain, departure.cell, goal_cell, start, goal)
+        apart = float(np.hypot(*(arrival - departure.points[0]))) * grid.resolution_m
+        if apart < _SAME_PLACE_M:
+            return _path_of(terrain, departure.points[:1], goal.yaw_rad)
+        polyline = self._polyline(terrain, departure, arrival, goal_cell, cancelled)
+        if cancelled():
+            raise Cancelled("the plan was cancelled by its caller")
+        points = self._smooth(terrain, departure, polyline)
+        return _path_of(terrain, points, goal.yaw_rad)
+
+    @abstractmethod
+    def _route(
+        self,
+        terrain: Terrain,
+        start: tuple[int, int],
+        goal: tuple[int, int],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.int64] | None:
+        """(N, 2) rows and columns of passable cells from start to goal."""
+
+    @abstractmethod
+    def _price(self, terrain: Terrain) -> ClearancePrice:
+        """What a metre costs."""
+
+    def _check_connected(
+        self, terrain: Terrain, start: tuple[int, int], goal: tuple[int, int], at: Pose2, to: Pose2
+    ) -> None:
+        if terrain.component[start] != terrain.component[goal]:
+            raise NoPath(
+                f"no passage from ({at.x:.2f}, {at.y:.2f}) to ({to.x:.2f}, {to.y:.2f}): "
+                + _what_is_missing(terrain, start, goal)
+            )
+
+    def _polyline(
+        self,
+        terrain: Terrain,
+        departure: Departure,
+        arrival: NDArray[np.float64],
+        goal_cell: tuple[int, int],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.float64]:
+        """Start, way out of a tight start, shortened route, goal."""
+        price = self._price(terrain)
+        begin = departure.points[-1]
+        at_once = segment_clearance(terrain.clearance_m, *begin, *arrival, price.comfortable_m)
+        if at_once >= price.comfortable_m:
+            line = np.array([begin, arrival])
+        else:
+            cells = self._route(terrain, departure.cell, goal_cell, cancelled)
+            if cells is None:  # cannot be: the two are in one piece
+                raise NoPath("start and goal are in one piece of free space, but no route joins them")
+            line = without_repeats(np.concatenate((begin[None], cells[:, ::-1] + 0.5, arrival[None])))
+            res = terrain.grid.resolution_m
+            line = take_shortcuts(
+                line, terrain.clearance_m, price, _LINE_SPACING_M / res, _LINE_REACH_M / res
+            )
+        return np.concatenate((departure.points[:-1], line))
+
+    def _smooth(
+        self, terrain: Terrain, departure: Departure, polyline: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        res = terrain.grid.resolution_m
+        steps = np.hypot(*np.diff(departure.points, axis=0).T)
+        floor = ClearanceFloor(
+            terrain.threshold_m - SLACK_M, departure.clearance_m - SLACK_M, float(steps.sum()) + 0.1 / res
+        )
+        return smooth(without_repeats(polyline), terrain.clearance_m, floor, _POSE_SPACING_M / res)
+
+
+def _path_of(terrain: Terrain, points: NDArray[np.float64], final_yaw_rad: float) -> Path:
+    clearance = clearances_at(terrain.clearance_m, points)
+    yaw = np.full(len(points), final_yaw_rad)
+    if len(points) > 1:
+        ahead = np.diff(points, axis=0)
+        tangent = np.concatenate((ahead[:1], ahead[:-1] + ahead[1:], ahead[-1:]))
+        yaw[:-1] = np.arctan2(tangent[:-1, 1], tangent[:-1, 0])
+    return Path(np.column_stack((terrain.to_metres(points), yaw)), clearance)
+
+
+def _what_is_missing(terrain: Terrain, start: tuple[int, int], goal: tuple[int, int]) -> str:
+    squared = widest_squared(terrain.transform.squared, start, goal)
+    if squared is None:
+        return f"nothing as wide as {2 * terrain.threshold_m:.2f} m joins them"
+    if squared == 0:
+        return "no known free space joins them"
+    has = (math.sqrt(squared) - 0.5) * terrain.grid.resolution_m
+    return (
+        f"the widest way has {has:.2f} m of clearance at its narrowest place, "
+        f"the footprint needs {terrain.threshold_m:.2f} m"
+    )

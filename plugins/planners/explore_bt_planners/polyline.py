@@ -1,0 +1,45 @@
+"""Polylines: (N, 2) float64, any unit of length."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["length_of", "resample", "subdivide", "without_repeats"]
+
+
+def length_of(polyline: NDArray[np.float64]) -> float:
+    """Along the polyline."""
+    return float(np.hypot(*np.diff(polyline, axis=0).T).sum())
+
+
+def resample(polyline: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """Points evenly spaced along a polyline, about ``spacing`` apart, ends included."""
+    steps = np.hypot(*np.diff(polyline, axis=0).T)
+    along = np.concatenate(([0.0], np.cumsum(steps)))
+    wanted = np.linspace(0.0, along[-1], max(1, round(along[-1] / spacing)) + 1)
+    points = np.column_stack(
+        (np.interp(wanted, along, polyline[:, 0]), np.interp(wanted, along, polyline[:, 1]))
+    )
+    points[0], points[-1] = polyline[0], polyline[-1]
+    return points
+
+
+def subdivide(polyline: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """The polyline with all of its corners, no piece longer than ``spacing``."""
+    pieces = [polyline[:1]]
+    for a, b in pairwise(polyline):
+        count = max(1, math.ceil(float(np.hypot(*(b - a))) / spacing))
+        pieces.append(a + (b - a) * (np.arange(1, count + 1) / count)[:, None])
+    return np.concatenate(pieces)
+
+
+def without_repeats(polyline: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The polyline without points that repeat the one before."""
+    moved = np.hypot(*np.diff(polyline, axis=0).T) > 1e-9
+    kept = polyline[np.concatenate(([True], moved))]
+    kept[-1] = polyline[-1]
+    return kept

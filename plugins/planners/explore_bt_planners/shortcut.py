@@ -1,0 +1,125 @@
+"""Straight lines in place of needless detours, where clearance is worth what it costs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from explore_bt_planners.polyline import length_of, subdivide
+from explore_bt_planners.sampling import clearance_at, segment_clearance
+from explore_bt_planners.search import ClearancePrice, price_at
+
+__all__ = ["take_shortcuts"]
+
+_ROUNDS, _CLEARLY = 5, 0.97
+_SAMPLE_CELLS = 2.0  # for the price; the floor is then checked finely
+
+
+def take_shortcuts(
+    polyline: NDArray[np.float64],
+    clearance_m: NDArray[np.float32],
+    price: ClearancePrice,
+    spacing_cells: float,
+    reach_cells: float,
+) -> NDArray[np.float64]:
+    """The cheapest way along the polyline that may leave it by straight lines between its points.
+
+    Dynamic programming over points ``spacing_cells`` apart; a line may span ``reach_cells`` and keeps the
+    price's floor everywhere. The pieces of the polyline itself stay as they are. Repeated on its own result
+    while that gets clearly shorter: each round cuts the corners that the one before has left.
+
+    Args:
+        polyline: (N, 2) float64 column, row as real numbers of cells.
+        clearance_m: (rows, cols) float32.
+        price: what a metre costs.
+        spacing_cells: between the ends of possible lines.
+        reach_cells: longest line.
+
+    Returns:
+        (M, 2) float64, first and last point unchanged.
+    """
+    line = polyline
+    for _ in range(_ROUNDS):
+        nodes = _spaced(line, spacing_cells)
+        shorter = _cheapest(
+            line, nodes, clearance_m, price.floor_m, price.comfortable_m, price.weight, reach_cells
+        )
+        enough = length_of(shorter) > _CLEARLY * length_of(line)
+        line = subdivide(shorter, spacing_cells)
+        if enough:
+            break
+    return line
+
+
+def _spaced(polyline: NDArray[np.float64], spacing_cells: float) -> NDArray[np.int64]:
+    """Indices of points about ``spacing_cells`` apart, both ends included."""
+    steps = np.hypot(*np.diff(polyline, axis=0).T)
+    along = np.concatenate(([0.0], np.cumsum(steps)))
+    count = max(1, round(along[-1] / spacing_cells))
+    picked = np.searchsorted(along, np.linspace(0.0, along[-1], count + 1))
+    picked[0], picked[-1] = 0, len(polyline) - 1
+    return np.unique(np.minimum(picked, len(polyline) - 1))
+
+
+@njit(cache=True)
+def _line_cost(clearance, u0, v0, u1, v1, floor, comfortable, weight, give_up_above):  # type: ignore[no-untyped-def]  # numba kernel
+    """Price of a straight line by the cells it crosses; infinite if too tight or above the bound."""
+    length = math.hypot(u1 - u0, v1 - v0)
+    steps = max(1, math.ceil(length / _SAMPLE_CELLS))
+    piece = length / steps
+    surplus = 0.0
+    for k in range(steps):
+        t = (k + 0.5) / steps
+        here = clearance[int(v0 + t * (v1 - v0)), int(u0 + t * (u1 - u0))]
+        if here < floor:
+            return np.inf
+        surplus += piece * (price_at(here, floor, comfortable, weight) - 1.0)
+        if length + surplus >= give_up_above:
+            return np.inf
+    return length + surplus
+
+
+@njit(cache=True)
+def _cheapest(polyline, nodes, clearance, floor, comfortable, weight, reach):  # type: ignore[no-untyped-def]  # numba kernel
+    count = len(nodes)
+    best = np.full(count, np.inf)
+    came = np.zeros(count, dtype=np.int64)
+    straight = np.zeros(count, dtype=np.bool_)
+    best[0] = 0.0
+    for j in range(1, count):
+        along = best[j - 1]
+        for p in range(nodes[j - 1], nodes[j]):
+            u0, v0 = polyline[p]
+            u1, v1 = polyline[p + 1]
+            here = max(floor, clearance_at(clearance, 0.5 * (u0 + u1), 0.5 * (v0 + v1)))
+            along += math.hypot(u1 - u0, v1 - v0) * price_at(here, floor, comfortable, weight)
+        best[j], came[j] = along * (1.0 + 1e-9), j - 1
+        u1, v1 = polyline[nodes[j]]
+        for i in range(j):  # far ones first: they often win, and then rule the near ones out
+            u0, v0 = polyline[nodes[i]]
+            length = math.hypot(u1 - u0, v1 - v0)
+            if length > reach or best[i] + length >= best[j]:
+                continue
+            cost = best[i] + _line_cost(
+                clearance, u0, v0, u1, v1, floor, comfortable, weight, best[j] - best[i]
+            )
+            if cost < best[j] and segment_clearance(clearance, u0, v0, u1, v1, floor) >= floor:
+                best[j], came[j], straight[j] = cost, i, True
+    return _unroll(polyline, nodes, came, straight)
+
+
+@njit(cache=True)
+def _unroll(polyline, nodes, came, straight):  # type: ignore[no-untyped-def]  # numba kernel
+    kept = np.zeros(len(polyline), dtype=np.bool_)
+    j = len(nodes) - 1
+    kept[nodes[j]] = True
+    while j > 0:
+        i = came[j]
+        kept[nodes[i]] = True
+        if not straight[j]:
+            kept[nodes[i] : nodes[j]] = True
+        j = i
+    return polyline[kept]

@@ -1,0 +1,70 @@
+"""Planner ``skeleton``: along the medial axis of the known free space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from explore_bt.interfaces import API_VERSION, PluginOptions
+from explore_bt.units import Length
+from explore_bt_planners.ascent import ascend
+from explore_bt_planners.field_planner import FieldPlanner, FieldPlannerOptions
+from explore_bt_planners.search import ClearancePrice, find_route
+from explore_bt_planners.terrain import Terrain
+
+__all__ = ["Skeleton", "SkeletonOptions"]
+
+
+class SkeletonOptions(FieldPlannerOptions):
+    """Options of the planner ``skeleton``."""
+
+    separation: float = Field(
+        1.7, gt=0.0, description="two obstacles this many footprints (with margin) apart make a medial axis"
+    )
+    comfortable: Length = Field(0.6, ge=0.0, description="clearance beyond which more is worth nothing")
+    clearance_weight: float = Field(
+        1.5, ge=0.0, description="what a metre at the least clearance costs more than a comfortable one"
+    )
+
+
+class Skeleton(FieldPlanner):
+    """Up the clearance to the medial axis, along it, down to the goal; then shortened and smoothed.
+
+    The medial axis is the generalised Voronoi diagram of the obstacles, unknown space being one.
+    """
+
+    name: ClassVar[str] = "skeleton"
+    api_version: ClassVar[int] = API_VERSION
+    Options: ClassVar[type[PluginOptions]] = SkeletonOptions
+
+    def __init__(self, options: SkeletonOptions) -> None:
+        super().__init__(options, options.separation)
+        self._taste = options
+
+    def _price(self, terrain: Terrain) -> ClearancePrice:
+        comfortable = max(self._taste.comfortable, terrain.threshold_m)
+        return ClearancePrice(terrain.threshold_m, comfortable, self._taste.clearance_weight)
+
+    def _route(
+        self,
+        terrain: Terrain,
+        start: tuple[int, int],
+        goal: tuple[int, int],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.int64] | None:
+        """On the skeleton and the two ways up to it; through all passable cells if that does not join."""
+        allowed = terrain.skeleton.copy()
+        for row, col in (start, goal):
+            way = ascend(terrain.transform.squared, terrain.passable, terrain.skeleton, row, col)
+            allowed[way[:, 0], way[:, 1]] = True
+        for cells in (allowed, terrain.passable):
+            route = find_route(
+                cells, terrain.passable, terrain.clearance_m, self._price(terrain), start, goal, cancelled
+            )
+            if route is not None:
+                return route
+        return None
