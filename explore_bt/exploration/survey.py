@@ -30,8 +30,12 @@ class Survey:
     decay_per_m: float
 
     def sights(self, frontier: Frontier, places: NDArray[np.int64]) -> Sights:
-        """Those of the places that see a frontier."""
-        return sights_of(self.grid, places, frontier.cells, self.range_m)
+        """Those of the places that see a frontier, and beyond it as far as an opening is believed.
+
+        From farther off the lidar's range ends at the frontier: that it shows nothing tells nothing.
+        """
+        depth_m = self.depth_m if self.depth_m < 0.5 * self.range_m else 0.0
+        return sights_of(self.grid, places, frontier.cells, self.range_m - depth_m)
 
     def answer(self, frontier: Frontier, places: NDArray[np.int64]) -> Viewpoint | LeftOpen | None:
         """The best of the places, or that they show too little; None where none sees the frontier."""

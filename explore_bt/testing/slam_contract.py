@@ -9,6 +9,7 @@
 No simulator is needed: the suite brings a small room with exact ranges and a scripted drive.
 """
 
+# ruff: noqa: D102  # the name of a test is its sentence
 from __future__ import annotations
 
 import dataclasses

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from abc import abstractmethod
 from collections.abc import Callable
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from explore_bt.errors import Cancelled, NoPath
+from explore_bt.errors import Cancelled, GoalBlocked, NoPath, StartBlocked
 from explore_bt.interfaces import Planner, PluginOptions, RobotContext, never
 from explore_bt.types import OccupancyGrid, Path, Pose2
 from explore_bt.units import Length
@@ -35,7 +36,7 @@ _SAME_PLACE_M = 0.02
 class FieldPlannerOptions(PluginOptions):
     """Options of every planner on a clearance field."""
 
-    margin: Length = Field(0.02, ge=0.0, description="clearance kept on top of the footprint's radius")
+    margin: Length = Field(0.02, ge=0.0, description="clearance kept beyond the footprint where there is a way")
     goal_tolerance: Length = Field(
         0.3,
         ge=0.0,
@@ -67,10 +68,28 @@ class FieldPlanner(Planner):
         footprint_radius_m: float,
         cancelled: Callable[[], bool] = never,
     ) -> Path:
-        """See ``Planner.plan``."""
+        """See ``Planner.plan``; the margin is given up where it leaves no way."""
+        try:
+            return self._plan(grid, start, goal, footprint_radius_m, self._options.margin, cancelled)
+        except (StartBlocked, GoalBlocked, NoPath) as refusal:
+            if self._options.margin == 0.0:
+                raise
+            with contextlib.suppress(StartBlocked, GoalBlocked, NoPath):
+                return self._plan(grid, start, goal, footprint_radius_m, 0.0, cancelled)
+            raise refusal
+
+    def _plan(
+        self,
+        grid: OccupancyGrid,
+        start: Pose2,
+        goal: Pose2,
+        footprint_radius_m: float,
+        margin_m: float,
+        cancelled: Callable[[], bool],
+    ) -> Path:
         if cancelled():
             raise Cancelled("the plan was cancelled by its caller")
-        terrain = self._terrains.terrain(grid, footprint_radius_m + self._options.margin)
+        terrain = self._terrains.terrain(grid, footprint_radius_m + margin_m)
         departure = depart(terrain, start, footprint_radius_m, self._options.leave_within)
         arrival, goal_cell = settle(terrain, goal, self._options.goal_tolerance)
         self._check_connected(terrain, departure.cell, goal_cell, start, goal)

@@ -7,6 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from explore_bt.types import Scan2D
+from explore_bt_slam.arrays import Floats, Singles
 from explore_bt_slam.trail import Trail
 
 __all__ = ["Sweep", "deskew"]
@@ -68,7 +69,9 @@ def deskew(scan: Scan2D, trail: Trail, max_range_m: float) -> Sweep:
 
 
 @njit(cache=True)
-def _straighten(angles, ranges, times, sensor, trail_times, trail):  # type: ignore[no-untyped-def]  # numba infers
+def _straighten(
+    angles: Floats, ranges: Floats, times: Floats, sensor: Floats, trail_times: Floats, trail: Floats
+) -> tuple[Singles, Singles]:
     """Interpolate the trail at each beam and express the beam in the trail's last pose."""
     count = angles.shape[0]
     origins = np.empty((count, 2), np.float32)

@@ -1,0 +1,123 @@
+"""Keyframes, their graph, and the loops it closes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Pose2
+from explore_bt_slam.closures import ClosureFinder
+from explore_bt_slam.graph_distance import relative_covariances
+from explore_bt_slam.keyframes import Keyframe
+from explore_bt_slam.local_map import gather_points, gather_surfels, trusted_neighbours
+from explore_bt_slam.pose_graph import Edge, PoseGraph
+from explore_bt_slam.surfels import SurfelMap, normals_of
+from explore_bt_slam.sweep import Sweep
+
+__all__ = ["BackEnd"]
+
+_TRUSTED_SIGMA_M = 0.05
+_EDGE_FLOOR = np.diag([0.002, 0.002, 0.0005]) ** 2
+
+
+class BackEnd:
+    """Where every keyframe is.
+
+    Args:
+        reach_m: the lidar's range: how far a keyframe's points can lie from it.
+        loop_closures: whether to look for them.
+    """
+
+    def __init__(self, reach_m: float, loop_closures: bool) -> None:
+        self._reach_m = reach_m
+        self._loop_closures = loop_closures
+        self._keyframes: list[Keyframe] = []
+        self._graph = PoseGraph()
+        self._finder = ClosureFinder()
+        self._closures = 0
+        self._covariances = np.zeros((0, 3, 3))
+
+    @property
+    def keyframes(self) -> Sequence[Keyframe]:
+        """All of them, in the order they came."""
+        return self._keyframes
+
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(N, 3) float64 of every keyframe, ``map`` frame."""
+        return self._graph.poses
+
+    @property
+    def edges(self) -> Sequence[Edge]:
+        """All constraints."""
+        return self._graph.edges
+
+    @property
+    def closures(self) -> int:
+        """How many constraints were found by place."""
+        return self._closures
+
+    def pose(self, keyframe: int) -> Pose2:
+        """Where a keyframe is."""
+        return self._graph.pose(keyframe)
+
+    def covariance(self, keyframe: int) -> NDArray[np.float64]:
+        """(3, 3) float64 marginal of a keyframe, ``map`` axes."""
+        return self._graph.covariance(keyframe)
+
+    def begin(self, sweep: Sweep, pose: Pose2) -> int:
+        """The first keyframe."""
+        self._graph.begin(pose)
+        return self._keep(sweep, 0.0)
+
+    def extend(self, sweep: Sweep, since: int, relative: Pose2, covariance: NDArray[np.float64]) -> int:
+        """A new keyframe at ``relative`` to keyframe ``since``, and the loops that it closes.
+
+        Args:
+            sweep: what was seen from it.
+            since: the keyframe that it was reached from.
+            relative: ``T_since_new``.
+            covariance: (3, 3) float64 of ``relative``, axes of the new keyframe.
+        """
+        newest = len(self._keyframes)
+        self._graph.extend(Edge(since, newest, relative, covariance + _EDGE_FLOOR, is_closure=False))
+        driven_m = self._keyframes[-1].driven_m + float(np.hypot(relative.x, relative.y))
+        self._keep(sweep, driven_m)
+        self._measure(newest)
+        if self._loop_closures:
+            self._close_loops(newest)
+        return newest
+
+    def surroundings(self, keyframe: int) -> tuple[NDArray[np.float64], SurfelMap]:
+        """The local map about a keyframe: (N, 2) points in the ``map`` frame, and line pieces."""
+        if self._covariances.shape[0] != len(self._keyframes):
+            self._measure(keyframe)
+        chosen = trusted_neighbours(
+            self.poses, self._covariances, keyframe, self._reach_m + 1.0, _TRUSTED_SIGMA_M
+        )
+        half_side_m = self._reach_m + 2.0
+        surfels = gather_surfels(self._keyframes, self.poses, chosen, self.pose(keyframe).xy, half_side_m)
+        return gather_points(self._keyframes, self.poses, chosen), surfels
+
+    def restore(self, keyframes: list[Keyframe], poses: NDArray[np.float64], edges: list[Edge]) -> None:
+        """A saved state."""
+        self._keyframes = list(keyframes)
+        self._graph.restore(poses, edges)
+        self._closures = sum(edge.is_closure for edge in edges)
+
+    def _close_loops(self, newest: int) -> None:
+        found = self._finder.find(self._keyframes, self.poses, self._covariances)
+        taken = self._graph.close(found)
+        if taken:
+            self._closures += len(taken)
+            self._measure(newest)
+
+    def _measure(self, source: int) -> None:
+        self._covariances = relative_covariances(self.poses, self.edges, source)
+
+    def _keep(self, sweep: Sweep, driven_m: float) -> int:
+        points = sweep.points
+        self._keyframes.append(Keyframe(sweep.stamp_s, points, normals_of(points), driven_m))
+        return len(self._keyframes) - 1

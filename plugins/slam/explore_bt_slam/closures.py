@@ -1,0 +1,204 @@
+"""Loop closures: places seen before, found near the estimate and verified from the lidar."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Pose2
+from explore_bt_slam.correlative import ScoreGrid, search
+from explore_bt_slam.keyframes import Keyframe
+from explore_bt_slam.local_map import gather_points, gather_surfels
+from explore_bt_slam.point_to_line import Alignment, align
+from explore_bt_slam.pose_graph import Edge
+
+__all__ = ["ClosureFinder", "ClosureRule"]
+
+
+@dataclass(frozen=True, slots=True)
+class ClosureRule:
+    """What may become a closure.
+
+    Attributes:
+        driven_m: at least this much way lies between the two keyframes.
+        distance_m: farther apart they share too little to match.
+        per_keyframe: at most so many attempts, spread over different places.
+        spacing_m: between the places tried.
+        overlap: least share of the scan that must fit the old map.
+        ambiguity: a rival pose with more than this share of the best score means "cannot tell".
+        points: a scan with fewer returns says too little about a place.
+        gate: χ² of three degrees of freedom that a closure may be off from the graph's own belief.
+        wide_m: closures searched in a window wider than this wait for a second, consistent one.
+    """
+
+    driven_m: float = 4.0
+    distance_m: float = 2.5
+    per_keyframe: int = 2
+    spacing_m: float = 1.0
+    overlap: float = 0.7
+    ambiguity: float = 0.85
+    wide_m: float = 0.5
+    window_max_m: float = 3.0
+    window_max_rad: float = 0.5
+    gate: float = 16.3
+    points: int = 40
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Pending:
+    edge: Edge
+
+
+class ClosureFinder:
+    """Proposes closures for the newest keyframe; keeps the doubtful ones until a second one agrees."""
+
+    def __init__(self, rule: ClosureRule | None = None) -> None:
+        self._rule = rule or ClosureRule()
+        self._pending: deque[_Pending] = deque(maxlen=20)
+
+    def find(
+        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], covariances: NDArray[np.float64]
+    ) -> list[Edge]:
+        """Verified closures between the newest keyframe and older ones.
+
+        Args:
+            keyframes: all of them.
+            poses: (N, 3) float64, theirs.
+            covariances: (N, 3, 3) float64 relative to the newest, see ``relative_covariances``.
+        """
+        newest = len(keyframes) - 1
+        edges: list[Edge] = []
+        if keyframes[newest].points.shape[0] < self._rule.points:
+            return edges
+        for old in self._candidates(keyframes, poses, covariances):
+            window_m = self._window_m(covariances[old])
+            edge = self._match(keyframes, poses, covariances[old], old, newest, window_m)
+            if edge is None:
+                continue
+            if window_m <= self._rule.wide_m:
+                edges.append(edge)
+            else:
+                edges.extend(self._agreed(edge, poses, covariances))
+        return edges
+
+    def _candidates(
+        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], covariances: NDArray[np.float64]
+    ) -> list[int]:
+        """Old keyframes worth a try: the nearest of each place, after enough way in between."""
+        newest, rule = len(keyframes) - 1, self._rule
+        driven = np.array([keyframe.driven_m for keyframe in keyframes])
+        distance = np.hypot(poses[:, 0] - poses[newest, 0], poses[:, 1] - poses[newest, 1])
+        slack = np.minimum(
+            3.0 * np.sqrt(covariances[:, 0, 0] + covariances[:, 1, 1]), self._rule.window_max_m
+        )
+        near = (driven[newest] - driven >= rule.driven_m) & (distance <= rule.distance_m + slack)
+        chosen: list[int] = []
+        for index in np.flatnonzero(near)[np.argsort(distance[near], kind="stable")]:
+            apart = [float(np.hypot(*(poses[index, :2] - poses[other, :2]))) for other in chosen]
+            if keyframes[index].points.shape[0] >= rule.points and all(
+                gap >= rule.spacing_m for gap in apart
+            ):
+                chosen.append(int(index))
+            if len(chosen) == rule.per_keyframe:
+                break
+        return chosen
+
+    def _window_m(self, covariance: NDArray[np.float64]) -> float:
+        """Half the side of the search: three standard deviations of the worst direction, and a cell."""
+        worst = float(np.linalg.eigvalsh(covariance[:2, :2])[-1]) if np.isfinite(covariance[0, 0]) else 100.0
+        return min(3.0 * math.sqrt(max(worst, 0.0)) + 0.05, self._rule.window_max_m)
+
+    def _match(
+        self,
+        keyframes: Sequence[Keyframe],
+        poses: NDArray[np.float64],
+        covariance: NDArray[np.float64],
+        old: int,
+        newest: int,
+        window_m: float,
+    ) -> Edge | None:
+        """Search, refine, verify; None where any of it fails."""
+        rule, scan = self._rule, keyframes[newest]
+        predicted = Pose2(*poses[newest].tolist())
+        chosen = _neighbourhood(keyframes, old)
+        guess = predicted
+        if window_m > 0.1:
+            window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.02, rule.window_max_rad)
+            grid = ScoreGrid(gather_points(keyframes, poses, chosen), 0.5)
+            match = search(grid, scan.points[::2], predicted, window_m, window_rad)
+            if match.runner_up > rule.ambiguity * match.score:
+                return None
+            guess = match.pose
+        surfels = gather_surfels(keyframes, poses, chosen, predicted.xy, 9.0)
+        found = align(scan.points, scan.normals, surfels, guess, guess, np.eye(3) * 1e-3)
+        if not self._is_sound(found, predicted, covariance, window_m):
+            return None
+        return _edge(poses, old, newest, found)
+
+    def _is_sound(
+        self, found: Alignment, predicted: Pose2, covariance: NDArray[np.float64], window_m: float
+    ) -> bool:
+        """Enough of the scan fits, every direction is pinned, and the graph finds it credible."""
+        off = np.array(
+            [found.pose.x - predicted.x, found.pose.y - predicted.y, predicted.between(found.pose).yaw_rad]
+        )
+        credible = covariance + np.diag([0.02, 0.02, 0.01]) ** 2
+        surprise = float(off @ np.linalg.solve(credible, off))
+        return (
+            found.overlap >= self._rule.overlap
+            and found.residual_m <= 0.05
+            and found.weakest_sigma_m <= max(0.02, 0.1 * window_m)
+            and surprise <= self._rule.gate
+        )
+
+    def _agreed(self, edge: Edge, poses: NDArray[np.float64], covariances: NDArray[np.float64]) -> list[Edge]:
+        """Both closures, if an earlier doubtful one says the same about the drift; else wait.
+
+        Pairwise consistency (Mangelson et al. 2018): around the loop a → b → b' → a' → a the known
+        motions and the two closures must cancel.
+        """
+        for pending in list(self._pending):
+            other = pending.edge
+            if other.b == edge.b:
+                continue
+            loop = (
+                edge.relative.compose(_between(poses, edge.b, other.b))
+                .compose(other.relative.inverse())
+                .compose(_between(poses, other.a, edge.a))
+            ).as_array()
+            spread = (
+                covariances[other.b] + edge.covariance + other.covariance + np.diag([0.05, 0.05, 0.02]) ** 2
+            )
+            if float(loop @ np.linalg.solve(spread, loop)) <= self._rule.gate:
+                self._pending.remove(pending)
+                return [other, edge]
+        self._pending.append(_Pending(edge))
+        return []
+
+
+def _neighbourhood(keyframes: Sequence[Keyframe], old: int) -> list[int]:
+    """The submap about an old keyframe: those driven through within 2 m of way before and after it."""
+    driven = keyframes[old].driven_m
+    return [
+        index
+        for index in range(max(old - 8, 0), min(old + 9, len(keyframes)))
+        if abs(keyframes[index].driven_m - driven) <= 2.0
+    ]
+
+
+def _between(poses: NDArray[np.float64], a: int, b: int) -> Pose2:
+    return Pose2(*poses[a].tolist()).between(Pose2(*poses[b].tolist()))
+
+
+def _edge(poses: NDArray[np.float64], old: int, newest: int, found: Alignment) -> Edge:
+    """The closure as a constraint; a floor stands for what all matches have in common."""
+    cos, sin = math.cos(found.pose.yaw_rad), math.sin(found.pose.yaw_rad)
+    turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    spread = np.linalg.inv(found.information + np.eye(3) * 1e-6)
+    covariance = turn @ spread @ turn.T + np.diag([0.005, 0.005, 0.002]) ** 2
+    return Edge(old, newest, Pose2(*poses[old].tolist()).between(found.pose), covariance, is_closure=True)

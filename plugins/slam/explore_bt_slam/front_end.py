@@ -1,0 +1,176 @@
+"""Lidar odometry: each scan is predicted, straightened, registered against the local map."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Imu, Pose2, Scan2D, WheelOdometry
+from explore_bt_slam.correlative import ScoreGrid, search
+from explore_bt_slam.inertial import InertialFilter
+from explore_bt_slam.options import KissGtsamOptions
+from explore_bt_slam.point_to_line import Alignment, align
+from explore_bt_slam.registration import KissRegistration
+from explore_bt_slam.surfels import SurfelMap, normals_of
+from explore_bt_slam.sweep import Sweep, deskew
+
+__all__ = ["FrontEnd", "Registered"]
+
+_FEWEST_POINTS = 15
+_CARRIED_M = 2.0
+_WEAK_SIGMA_M = 0.1
+_OPEN_DIRECTION = "the walls in view leave one direction open, as in a plain corridor"
+_LEAST_OVERLAP = 0.35
+_DOUBTFUL_OVERLAP = 0.5
+_DOUBTFUL_RESIDUAL_M = 0.04
+_SURE_OVERLAP = 0.7
+_CLEARLY_BETTER = 0.15
+_ANCHOR = np.diag([0.003, 0.003, 0.001]) ** 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Registered:
+    """What became of a scan.
+
+    Attributes:
+        pose: ``T_map_base`` at its stamp.
+        sweep: straightened by the motion found.
+        covariance: (3, 3) float64 of the pose against the local map, base axes.
+        overlap: share [0, 1] of the scan that the local map already holds.
+        fits: False where scan and map contradict each other: it then goes into no map.
+        weakness: what the lidar left open, in words; empty if nothing.
+        problem: why the pose is hardly worth anything; empty if it is.
+    """
+
+    pose: Pose2
+    sweep: Sweep
+    covariance: NDArray[np.float64]
+    overlap: float = 1.0
+    fits: bool = True
+    weakness: str = ""
+    problem: str = ""
+
+
+class FrontEnd:
+    """Deskew, prediction, kiss-icp, point-to-line refinement."""
+
+    def __init__(self, options: KissGtsamOptions, speed_limit_mps: float) -> None:
+        self._max_range_m = options.max_range
+        self._filter = InertialFilter(speed_limit_mps)
+        self._kiss = KissRegistration(options.voxel)
+        self._points = np.zeros((0, 2))
+        self._surfels = SurfelMap((0.0, 0.0), 1.0)
+
+    @property
+    def motion(self) -> Pose2:
+        """Predicted motion since the last scan."""
+        return self._filter.motion
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """(3, 3) float64 of the present pose since the last keyframe, base axes."""
+        return self._filter.covariance
+
+    @property
+    def time_s(self) -> float:
+        """How far the prediction reaches."""
+        return self._filter.time_s if self._filter.time_s is not None else 0.0
+
+    def take_imu(self, imu: Imu) -> None:
+        """Predict on."""
+        self._filter.take_imu(imu)
+
+    def take_odometry(self, odometry: WheelOdometry) -> None:
+        """Correct the speed by the wheels."""
+        self._filter.take_odometry(odometry)
+
+    def first(self, scan: Scan2D, start: Pose2) -> Registered:
+        """Straighten the first scan of all; there is nothing yet to register it against."""
+        self._filter.advance_to(scan.stamp_s)
+        pose = start.compose(self._filter.motion)
+        sweep, covariance = self._keep_prediction(scan)
+        return Registered(pose, sweep, covariance)
+
+    def register(self, scan: Scan2D, last: Pose2) -> Registered:
+        """Lay a scan into the local map; ``last`` is the pose of the scan before, ``map`` frame."""
+        self._filter.advance_to(scan.stamp_s)
+        self._filter.roll()
+        trail, prediction = self._filter.trail, last.compose(self._filter.motion)
+        covariance = self._filter.covariance
+        points = deskew(scan, trail, self._max_range_m).points
+        if min(points.shape[0], self._surfels.count_near(prediction.xy, self._max_range_m)) < _FEWEST_POINTS:
+            return self._carried(scan, prediction)
+        found = self._refine(points, self._kiss.align(points, prediction), prediction, covariance)
+        if found.overlap < _DOUBTFUL_OVERLAP or found.residual_m > _DOUBTFUL_RESIDUAL_M:
+            sought = self._searched(points, prediction, covariance)
+            is_sure = sought.overlap >= _SURE_OVERLAP and sought.residual_m <= _DOUBTFUL_RESIDUAL_M
+            if is_sure and sought.fitness > found.fitness + _CLEARLY_BETTER:
+                found, covariance = sought, self._filter.distrust()
+        if found.overlap < _LEAST_OVERLAP:
+            return self._contradicted(scan, prediction, found.overlap)
+        motion = last.between(found.pose)
+        sweep = deskew(scan, trail.corrected_to(motion), self._max_range_m)
+        posterior = _inverse(_inverse(covariance) + _turned(found.information, -prediction.yaw_rad))
+        self._filter.correct(motion, posterior)
+        weakness = _OPEN_DIRECTION if found.weakest_sigma_m > _WEAK_SIGMA_M else ""
+        return Registered(found.pose, sweep, posterior, found.overlap, weakness=weakness)
+
+    def relocate(self, points: NDArray[np.float64], surfels: SurfelMap) -> None:
+        """A keyframe was made here: take its surroundings as the local map, count errors from it.
+
+        Args:
+            points: (N, 2) float64, ``map`` frame.
+            surfels: the same as line pieces.
+        """
+        self._points = points
+        self._kiss.rebuild(points)
+        self._surfels = surfels
+        self._filter.anchor(_ANCHOR)
+
+    def _refine(
+        self, points: NDArray[np.float64], guess: Pose2, prior: Pose2, covariance: NDArray[np.float64]
+    ) -> Alignment:
+        information = _turned(_inverse(covariance), prior.yaw_rad)
+        return align(points, normals_of(points), self._surfels, guess, prior, information)
+
+    def _searched(
+        self, points: NDArray[np.float64], prior: Pose2, covariance: NDArray[np.float64]
+    ) -> Alignment:
+        """A doubtful match is sought again, by correlation and without the prediction's word."""
+        window_m = min(3.0 * math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1])) + 0.3, 2.0)
+        window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.2, 0.8)
+        match = search(ScoreGrid(self._points, 0.5), points[::2], prior, window_m, window_rad)
+        return self._refine(points, match.pose, match.pose, np.eye(3))
+
+    def _carried(self, scan: Scan2D, prediction: Pose2) -> Registered:
+        """Nothing here can be matched, as in the middle of a hall: the IMU carries the pose a while."""
+        sweep, covariance = self._keep_prediction(scan)
+        sigma_m = math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1]))
+        text = f"next to nothing within {self._max_range_m:g} m to match; unsure by {sigma_m:.1f} m"
+        problem = text if sigma_m > _CARRIED_M else ""
+        return Registered(prediction, sweep, covariance, weakness=text, problem=problem)
+
+    def _contradicted(self, scan: Scan2D, prediction: Pose2, overlap: float) -> Registered:
+        sweep, covariance = self._keep_prediction(scan)
+        problem = f"only {overlap:.0%} of the scan fits the map"
+        return Registered(prediction, sweep, covariance, overlap, fits=False, problem=problem)
+
+    def _keep_prediction(self, scan: Scan2D) -> tuple[Sweep, NDArray[np.float64]]:
+        sweep = deskew(scan, self._filter.trail, self._max_range_m)
+        covariance = self._filter.covariance
+        self._filter.correct(self._filter.motion, covariance)
+        return sweep, covariance
+
+
+def _inverse(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+
+
+def _turned(matrix: NDArray[np.float64], yaw_rad: float) -> NDArray[np.float64]:
+    """A covariance or information of axes turned by ``yaw_rad``, in the axes they are turned against."""
+    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return turn @ matrix @ turn.T

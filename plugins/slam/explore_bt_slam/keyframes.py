@@ -1,0 +1,43 @@
+"""Keyframes: the scans that stay."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Pose2
+
+__all__ = ["Keyframe", "KeyframeRule"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Keyframe:
+    """A scan kept for matching; its pose is the graph's business.
+
+    Attributes:
+        points, normals: (N, 2) float64, metres, base frame; normals (0, 0) where there is no line.
+        driven_m: length of the way to here since the start.
+    """
+
+    stamp_s: float
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    driven_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class KeyframeRule:
+    """When a scan becomes a keyframe."""
+
+    distance_m: float
+    angle_rad: float
+    overlap: float = 0.6
+
+    def wants(self, since_keyframe: Pose2, overlap: float) -> bool:
+        """Driven or turned far enough, or little of the scan is in the map yet."""
+        far = float(np.hypot(since_keyframe.x, since_keyframe.y)) >= self.distance_m
+        turned = abs(since_keyframe.yaw_rad) >= self.angle_rad
+        moved = far or turned or float(np.hypot(since_keyframe.x, since_keyframe.y)) >= 0.1
+        return far or turned or (moved and overlap < self.overlap)

@@ -1,0 +1,93 @@
+"""The ``kiss_gtsam`` plugin: kiss-icp odometry, SE(2) pose graph in gtsam, loops closed from the lidar."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import ClassVar
+
+from explore_bt.interfaces import API_VERSION, PluginOptions, RobotContext, Slam
+from explore_bt.types import (
+    Estimate,
+    GridWindow,
+    Imu,
+    Measurement,
+    OccupancyGrid,
+    Pose2,
+    Scan2D,
+    Trajectory,
+    WheelOdometry,
+)
+from explore_bt_slam.options import KissGtsamOptions
+from explore_bt_slam.pipeline import Pipeline
+from explore_bt_slam.storage import read_arrays, write_arrays
+from explore_bt_slam.warm_up import warm_up
+
+__all__ = ["KissGtsam"]
+
+
+class KissGtsam(Slam):
+    """Lidar and gyroscope in, pose and map out; wheels only where a mission says ``use_odometry``."""
+
+    name = "kiss_gtsam"
+    api_version = API_VERSION
+    Options: ClassVar[type[PluginOptions]] = KissGtsamOptions
+
+    def __init__(self, options: PluginOptions) -> None:
+        super().__init__(options)
+        self._settings = KissGtsamOptions.model_validate(options.model_dump())
+        self._start: Pose2 | None = None
+        self._pipeline = self._new_pipeline(RobotContext())
+
+    def setup(self, context: RobotContext) -> None:
+        """Begin at ``context.start``; compiles the kernels on first use (some seconds, then cached)."""
+        self._start = context.start
+        warm_up(self._new_pipeline(context))
+        self._pipeline = self._new_pipeline(context)
+
+    def update(self, measurement: Measurement) -> None:
+        """Take one measurement; see ``Pipeline`` for the steps."""
+        if isinstance(measurement, Imu):
+            self._pipeline.take_imu(measurement)
+        elif isinstance(measurement, WheelOdometry):
+            self._pipeline.take_odometry(measurement)
+        elif isinstance(measurement, Scan2D):
+            begun = time.perf_counter()
+            self._pipeline.take_scan(measurement)
+            self._pipeline.journal.took(time.perf_counter() - begun)
+
+    def estimate(self) -> Estimate:
+        """The pose now, carried from the last scan to the last IMU sample by the gyroscope."""
+        return self._pipeline.estimate()
+
+    def grid(self) -> OccupancyGrid:
+        """The map; copied only when asked for and changed."""
+        return self._pipeline.mapper.grid()
+
+    def changed_since(self, revision: int) -> GridWindow | None:
+        """Window of cells that may differ from that revision."""
+        return self._pipeline.mapper.changed_since(revision)
+
+    def trajectory(self) -> Trajectory:
+        """One pose per scan, moved along with the graph."""
+        return self._pipeline.journal.trajectory(self._pipeline.back.poses)
+
+    def figures(self) -> Mapping[str, float]:
+        """``scans``, ``keyframes``, ``loop_closures``, ``ms_per_scan_median``, ``ms_per_scan_p99``."""
+        return {
+            **self._pipeline.journal.figures(),
+            "keyframes": float(len(self._pipeline.back.keyframes)),
+            "loop_closures": float(self._pipeline.back.closures),
+        }
+
+    def save(self, folder: Path) -> None:
+        """One file, ``slam.npz``: keyframes, graph, kept sweeps, trajectory."""
+        write_arrays(folder, self.name, self._settings.resolution, self._pipeline.arrays())
+
+    def load(self, folder: Path) -> None:
+        """Go on in a saved map, at ``context.start``, or where the saved trajectory ended if None."""
+        self._pipeline.restore(read_arrays(folder, self.name, self._settings.resolution), self._start)
+
+    def _new_pipeline(self, context: RobotContext) -> Pipeline:
+        return Pipeline(self._settings, context)

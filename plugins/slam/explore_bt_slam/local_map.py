@@ -1,0 +1,63 @@
+"""The surroundings that a scan is registered against, gathered from keyframes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Pose2
+from explore_bt_slam.keyframes import Keyframe
+from explore_bt_slam.surfels import SurfelMap
+
+__all__ = ["gather_points", "gather_surfels", "trusted_neighbours"]
+
+_RECENT = 12
+_MOST = 60
+
+
+def trusted_neighbours(
+    poses: NDArray[np.float64], covariances: NDArray[np.float64], source: int, reach_m: float, sigma_m: float
+) -> list[int]:
+    """Keyframes to match against from ``source``: near, and surely placed relative to it.
+
+    The last few always count. Others must be within ``reach_m`` and known to ``sigma_m`` along the graph,
+    so that a part of the map that drift has displaced is not matched against before a closure has tied it.
+
+    Args:
+        poses: (N, 3) float64 keyframe poses.
+        covariances: (N, 3, 3) float64, see ``relative_covariances``.
+        source: the keyframe to look from.
+        reach_m: how far others may be.
+        sigma_m: how unsure their place may be.
+    """
+    distance = np.hypot(poses[:, 0] - poses[source, 0], poses[:, 1] - poses[source, 1])
+    spread = np.sqrt(covariances[:, 0, 0] + covariances[:, 1, 1])
+    recent = np.arange(poses.shape[0]) > source - _RECENT
+    wanted = (distance <= reach_m) & ((spread <= sigma_m) | recent)
+    chosen = np.flatnonzero(wanted)
+    nearest = chosen[np.argsort(distance[chosen], kind="stable")][:_MOST]
+    return sorted(int(index) for index in nearest)
+
+
+def gather_points(
+    keyframes: Sequence[Keyframe], poses: NDArray[np.float64], chosen: Iterable[int]
+) -> NDArray[np.float64]:
+    """(N, 2) float64, ``map`` frame: all points of the chosen keyframes."""
+    clouds = [Pose2(*poses[index].tolist()).apply(keyframes[index].points) for index in chosen]
+    return np.concatenate(clouds) if clouds else np.zeros((0, 2))
+
+
+def gather_surfels(
+    keyframes: Sequence[Keyframe],
+    poses: NDArray[np.float64],
+    chosen: Iterable[int],
+    centre_xy: tuple[float, float],
+    half_side_m: float,
+) -> SurfelMap:
+    """The line pieces of the chosen keyframes about a centre."""
+    surfels = SurfelMap(centre_xy, half_side_m)
+    for index in chosen:
+        surfels.add(keyframes[index].points, keyframes[index].normals, Pose2(*poses[index].tolist()))
+    return surfels

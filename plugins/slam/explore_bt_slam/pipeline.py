@@ -1,0 +1,183 @@
+"""Lidar SLAM, step by step."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.interfaces import RobotContext
+from explore_bt.types import Estimate, Imu, Pose2, Scan2D, WheelOdometry
+from explore_bt_slam.back_end import BackEnd
+from explore_bt_slam.front_end import FrontEnd, Registered
+from explore_bt_slam.health import HealthMonitor
+from explore_bt_slam.journal import Journal
+from explore_bt_slam.keyframes import KeyframeRule
+from explore_bt_slam.mapper import Mapper
+from explore_bt_slam.options import KissGtsamOptions
+from explore_bt_slam.scan_check import fault_of
+from explore_bt_slam.storage import (
+    Arrays,
+    pack_edges,
+    pack_keyframes,
+    pack_sweeps,
+    unpack_edges,
+    unpack_keyframes,
+    unpack_sweeps,
+)
+from explore_bt_slam.sweep import Sweep
+
+__all__ = ["Pipeline"]
+
+_BACKWARDS_S = 0.05
+
+
+class Pipeline:
+    """One robot's SLAM, from measurements to pose and map.
+
+    The robot is where it stands from a keyframe, plus the predicted motion since the last scan; so when
+    the graph moves, everything moves along.
+    """
+
+    def __init__(self, options: KissGtsamOptions, context: RobotContext) -> None:
+        start, body_radius_m = context.start or Pose2.identity(), context.footprint_radius_m
+        # a driver may overshoot its limit a little
+        self.front = FrontEnd(options, 1.1 * context.limits.speed_mps)
+        self.back = BackEnd(options.max_range, options.loop_closures)
+        self.mapper = Mapper(options.resolution, body_radius_m)
+        self.journal = Journal()
+        self.health = HealthMonitor()
+        self._rule = KeyframeRule(options.keyframe_distance, options.keyframe_angle)
+        self._use_odometry = options.use_odometry
+        self.mapper.begin(start, Pose2.identity())
+        self._start = start
+        self._keyframe = -1
+        self._weak_keyframes = 0
+        self._relative = Pose2.identity()
+        self._scan_s = -np.inf
+        self._covariance: tuple[int, int, NDArray[np.float64]] = (-1, 0, np.zeros((3, 3)))
+
+    @property
+    def pose(self) -> Pose2:
+        """Where the robot is now, ``map`` frame."""
+        return self._scan_pose.compose(self.front.motion)
+
+    @property
+    def _scan_pose(self) -> Pose2:
+        if self._keyframe < 0:
+            return self._start
+        return self.back.pose(self._keyframe).compose(self._relative)
+
+    def take_imu(self, imu: Imu) -> None:
+        """A sample of the IMU."""
+        numbers = (imu.stamp_s, *imu.angular_velocity_rps, *imu.linear_acceleration_mps2)
+        if not np.isfinite(numbers).all():
+            return
+        if imu.stamp_s < self.front.time_s - _BACKWARDS_S:
+            self.health.bad(imu.stamp_s, f"an IMU sample {self.front.time_s - imu.stamp_s:.3f} s old")
+            return
+        self.front.take_imu(imu)
+        self.health.passed(imu.stamp_s)
+
+    def take_odometry(self, odometry: WheelOdometry) -> None:
+        """The wheels' word, heard only where the mission says so."""
+        if self._use_odometry and np.isfinite([odometry.stamp_s, *odometry.T_odom_base.as_array()]).all():
+            self.front.take_odometry(odometry)
+
+    def take_scan(self, scan: Scan2D) -> None:
+        """One scan, all the way to the map."""
+        problem = fault_of(scan, self._scan_s)
+        if problem:
+            self.health.bad(scan.stamp_s, problem)
+            return
+        self._scan_s = scan.stamp_s
+        if self._keyframe < 0:
+            self._begin(scan)
+            return
+        registered = self.front.register(scan, self._scan_pose)
+        self._relative = self.back.pose(self._keyframe).between(registered.pose)
+        self._judge(registered)
+        if registered.fits:
+            if self._rule.wants(self._relative, registered.overlap):
+                self._make_keyframe(registered)
+            self._draw(registered.sweep)
+        self.journal.note(scan.stamp_s, self._keyframe, self._relative)
+
+    def estimate(self) -> Estimate:
+        """Pose, trust and map revision as they stand."""
+        health, reason = self.health.state
+        stamp_s = max(self.front.time_s, 0.0)
+        return Estimate(stamp_s, self.pose, self._spread(), self.mapper.revision, health, reason)
+
+    def arrays(self) -> Arrays:
+        """The whole state."""
+        stamps, keyframes, relatives = self.journal.arrays()
+        return {
+            **pack_keyframes(self.back.keyframes),
+            **pack_edges(self.back.edges),
+            **pack_sweeps(self.mapper.kept),
+            **self.mapper.arrays(),
+            "graph_poses": self.back.poses,
+            "journal_stamps": stamps,
+            "journal_keyframes": keyframes,
+            "journal_relatives": relatives,
+            "last_pose": self.pose.as_array(),
+        }
+
+    def restore(self, arrays: Arrays, start: Pose2 | None) -> None:
+        """Go on in a saved map, at ``start``, or where it ended if None."""
+        poses = arrays["graph_poses"]
+        if not poses.shape[0]:
+            return
+        self.back.restore(unpack_keyframes(arrays), poses, unpack_edges(arrays))
+        self.mapper.restore(arrays, unpack_sweeps(arrays), poses)
+        self.journal.restore(
+            arrays["journal_stamps"], arrays["journal_keyframes"], arrays["journal_relatives"]
+        )
+        start = start or Pose2(*arrays["last_pose"].tolist())
+        poses = self.back.poses
+        self._keyframe = int(np.argmin(np.hypot(poses[:, 0] - start.x, poses[:, 1] - start.y)))
+        self._relative = self.back.pose(self._keyframe).between(start)
+        self.front.relocate(*self.back.surroundings(self._keyframe))
+
+    def _begin(self, scan: Scan2D) -> None:
+        first = self.front.first(scan, self._start)
+        self._keyframe = self.back.begin(first.sweep, first.pose)
+        self.front.relocate(*self.back.surroundings(self._keyframe))
+        self.mapper.follow(self.back.poses)
+        self._draw(first.sweep)
+        self.health.good(scan.stamp_s)
+        self.journal.note(scan.stamp_s, self._keyframe, self._relative)
+
+    def _make_keyframe(self, registered: Registered) -> None:
+        # while the lidar leaves a direction open, one error of speed runs through all keyframes: after n
+        # of them it has grown to n σ and not to √n σ, so the n-th one adds (2 n − 1) σ²
+        self._weak_keyframes = self._weak_keyframes + 1 if registered.weakness else 0
+        covariance = registered.covariance * max(2 * self._weak_keyframes - 1, 1)
+        self._keyframe = self.back.extend(registered.sweep, self._keyframe, self._relative, covariance)
+        self._relative = Pose2.identity()
+        self.front.relocate(*self.back.surroundings(self._keyframe))
+        self.mapper.follow(self.back.poses)
+
+    def _draw(self, sweep: Sweep) -> None:
+        self.mapper.see(sweep, self._keyframe, self.back.pose(self._keyframe), self._relative)
+
+    def _judge(self, registered: Registered) -> None:
+        if registered.problem:
+            self.health.bad(registered.sweep.stamp_s, registered.problem)
+        else:
+            self.health.good(registered.sweep.stamp_s, registered.weakness)
+
+    def _spread(self) -> NDArray[np.float64]:
+        """Keyframe's marginal and what has been driven since, ``map`` axes."""
+        if self._keyframe < 0:
+            return np.zeros((3, 3))
+        key = (self._keyframe, self.back.closures)
+        if self._covariance[:2] != key:
+            self._covariance = (*key, self.back.covariance(self._keyframe))
+        yaw, base = self.pose.yaw_rad, self.back.pose(self._keyframe)
+        arm = np.eye(3)
+        arm[0, 2], arm[1, 2] = base.y - self.pose.y, self.pose.x - base.x
+        turn = np.eye(3)
+        turn[:2, :2] = [[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]]
+        spread = arm @ self._covariance[2] @ arm.T + turn @ self.front.covariance @ turn.T
+        return np.asarray(0.5 * (spread + spread.T), dtype=np.float64)

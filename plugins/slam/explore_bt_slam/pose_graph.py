@@ -1,0 +1,163 @@
+"""The pose graph: SE(2) keyframes and constraints in gtsam's iSAM2."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import gtsam
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Pose2
+
+__all__ = ["Edge", "PoseGraph"]
+
+_PRIOR_SIGMAS = np.array([1e-3, 1e-3, 1e-4])
+_CAUCHY_SCALE = 1.0
+_UPDATES_PER_CLOSURE = 1
+_CREDIBLE = 16.3  # χ² of three degrees of freedom, 99.9 %
+_COMMON = np.diag([0.02, 0.02, 0.01]) ** 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Edge:
+    """A measured relative pose between two keyframes.
+
+    Attributes:
+        a, b: keyframes; ``relative`` is ``T_a_b``.
+        covariance: (3, 3) float64 over x, y (m²), yaw (rad²), in the axes of ``b``.
+        is_closure: found by place, not by driving: goes in under a robust kernel.
+    """
+
+    a: int
+    b: int
+    relative: Pose2
+    covariance: NDArray[np.float64]
+    is_closure: bool
+
+
+class PoseGraph:
+    """Best poses of all keyframes under all constraints."""
+
+    def __init__(self) -> None:
+        parameters = gtsam.ISAM2Params()
+        parameters.setRelinearizeThreshold(1e-3)
+        parameters.relinearizeSkip = 1
+        self._isam = gtsam.ISAM2(parameters)
+        self._poses = np.zeros((0, 3))
+        self._edges: list[Edge] = []
+
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(N, 3) float64: x, y (m), yaw (rad) of every keyframe, ``map`` frame; do not write."""
+        return self._poses
+
+    @property
+    def edges(self) -> Sequence[Edge]:
+        """All constraints, in the order they came."""
+        return self._edges
+
+    def pose(self, index: int) -> Pose2:
+        """A keyframe's pose."""
+        x, y, yaw = self._poses[index]
+        return Pose2(float(x), float(y), float(yaw))
+
+    def begin(self, pose: Pose2) -> None:
+        """The first keyframe, held where it is."""
+        factors, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
+        factors.add(gtsam.PriorFactorPose2(0, _gtsam(pose), gtsam.noiseModel.Diagonal.Sigmas(_PRIOR_SIGMAS)))
+        values.insert(0, _gtsam(pose))
+        self._isam.update(factors, values)
+        self._poses = pose.as_array()[None, :]
+
+    def extend(self, edge: Edge) -> None:
+        """A new keyframe ``edge.b``, the next number, reached from ``edge.a``."""
+        pose = self.pose(edge.a).compose(edge.relative)
+        factors, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
+        factors.add(_factor(edge, is_robust=False))
+        values.insert(edge.b, _gtsam(pose))
+        self._isam.update(factors, values)
+        self._edges.append(edge)
+        self._poses = np.vstack((self._poses, pose.as_array()))
+
+    def restore(self, poses: NDArray[np.float64], edges: Sequence[Edge]) -> None:
+        """A saved graph: all keyframes and constraints at once."""
+        factors, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
+        first = Pose2(*map(float, poses[0]))
+        factors.add(gtsam.PriorFactorPose2(0, _gtsam(first), gtsam.noiseModel.Diagonal.Sigmas(_PRIOR_SIGMAS)))
+        for index, pose in enumerate(poses):
+            values.insert(index, gtsam.Pose2(*map(float, pose)))
+        for edge in edges:
+            factors.add(_factor(edge, edge.is_closure))
+        self._isam.update(factors, values)
+        self._edges = list(edges)
+        self._poses = poses.copy()
+
+    def close(self, edges: Sequence[Edge]) -> list[Edge]:
+        """Put in those closures that the graph finds credible.
+
+        A closure goes in without a kernel first, so that it takes the drift out at once (under a robust
+        kernel a true closure of a large drift looks like an outlier), and gets the kernel once it fits.
+
+        Returns:
+            The closures that went in.
+        """
+        taken = [edge for edge in edges if self.surprise(edge) <= _CREDIBLE]
+        if not taken:
+            return []
+        indices = self._add(taken, is_robust=False)
+        for _ in range(_UPDATES_PER_CLOSURE):
+            self._isam.update()
+        self._add(taken, is_robust=True, replaced=indices)
+        self._poses = self._extract()
+        self._edges.extend(taken)
+        return taken
+
+    def surprise(self, edge: Edge) -> float:
+        """Squared Mahalanobis distance of a new constraint from what the graph believes.
+
+        The innovation test with the exact joint marginal of both keyframes, widened by what neighbouring
+        matches have in common.
+        """
+        now = self.pose(edge.a).between(self.pose(edge.b))
+        joint = self._isam.jointMarginalCovariance([edge.a, edge.b])
+        back = -np.asarray(_gtsam(now.inverse()).AdjointMap())
+        cross = back @ np.asarray(joint.at(edge.a, edge.b))
+        spread = back @ np.asarray(joint.at(edge.a, edge.a)) @ back.T + cross + cross.T
+        spread = spread + np.asarray(joint.at(edge.b, edge.b)) + edge.covariance + _COMMON
+        off = now.between(edge.relative).as_array()
+        return float(off @ np.linalg.solve(spread, off))
+
+    def covariance(self, index: int) -> NDArray[np.float64]:
+        """(3, 3) float64 marginal of a keyframe, ``map`` axes."""
+        local = np.asarray(self._isam.marginalCovariance(index))
+        yaw = float(self._poses[index, 2])
+        turn = np.eye(3)
+        turn[:2, :2] = [[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]]
+        return turn @ local @ turn.T
+
+    def _extract(self) -> NDArray[np.float64]:
+        return np.asarray(gtsam.utilities.extractPose2(self._isam.calculateEstimate()))
+
+    def _add(self, edges: Sequence[Edge], is_robust: bool, replaced: Sequence[int] = ()) -> list[int]:
+        factors = gtsam.NonlinearFactorGraph()
+        for edge in edges:
+            factors.add(_factor(edge, is_robust))
+        result = self._isam.update(factors, gtsam.Values(), list(replaced))
+        return list(result.getNewFactorsIndices())
+
+
+def _gtsam(pose: Pose2) -> gtsam.Pose2:
+    return gtsam.Pose2(pose.x, pose.y, pose.yaw_rad)
+
+
+def _factor(edge: Edge, is_robust: bool) -> gtsam.BetweenFactorPose2:
+    plain = gtsam.noiseModel.Gaussian.Covariance(edge.covariance)
+    relative = _gtsam(edge.relative)
+    if not is_robust:
+        return gtsam.BetweenFactorPose2(edge.a, edge.b, relative, plain)
+    kernel = gtsam.noiseModel.mEstimator.Cauchy.Create(_CAUCHY_SCALE)
+    robust = gtsam.noiseModel.Robust.Create(kernel, plain)
+    return gtsam.BetweenFactorPose2(edge.a, edge.b, relative, robust)

@@ -1,0 +1,85 @@
+from __future__ import annotations
+
+import gtsam
+import numpy as np
+from explore_bt_slam.graph_distance import relative_covariances
+from explore_bt_slam.pose_graph import Edge, PoseGraph
+
+from explore_bt.types import Pose2
+
+SPREAD = np.diag([0.02, 0.01, 0.01]) ** 2
+
+
+def loop(closed: int, seed: int = 0) -> tuple[PoseGraph, list[Pose2]]:
+    """A ring of 24 keyframes with drift, of which the last ``closed`` may be closed onto the first."""
+    rng = np.random.default_rng(seed)
+    graph, truth = PoseGraph(), [Pose2.identity()]
+    graph.begin(truth[0])
+    step = Pose2(0.5, 0.0, 2.0 * np.pi / 24)
+    for k in range(1, 24 + closed):
+        truth.append(truth[-1].compose(step))
+        noise = rng.normal(0.0, np.sqrt(np.diag(SPREAD)))
+        graph.extend(Edge(k - 1, k, step.compose(Pose2(*noise)), SPREAD, False))
+    return graph, truth
+
+
+def off(graph: PoseGraph, truth: list[Pose2]) -> float:
+    return max(graph.pose(k).distance_to(pose) for k, pose in enumerate(truth))
+
+
+def test_closures_take_the_drift_out_of_a_loop() -> None:
+    graph, truth = loop(closed=4)
+    before = off(graph, truth)
+    edges = [Edge(k, 24 + k, truth[k].between(truth[24 + k]), SPREAD / 16.0, True) for k in range(4)]
+    assert graph.close(edges) == edges
+    assert off(graph, truth) < 0.5 * before
+    assert graph.pose(25).distance_to(graph.pose(1)) < 0.02
+
+
+def test_a_closure_that_contradicts_the_graph_stays_out() -> None:
+    graph, truth = loop(closed=4)
+    assert graph.close(
+        [Edge(k, 24 + k, truth[k].between(truth[24 + k]), SPREAD / 16.0, True) for k in range(3)]
+    )
+    before = graph.poses.copy()
+    assert not graph.close([Edge(3, 27, Pose2(0.8, 0.0, 0.0), SPREAD / 16.0, True)])
+    assert len([edge for edge in graph.edges if edge.is_closure]) == 3
+    assert np.array_equal(graph.poses, before)
+
+
+def test_relative_covariances_equal_the_joint_marginals_along_a_chain() -> None:
+    graph, _ = loop(closed=1)
+    ours = relative_covariances(graph.poses, graph.edges, 20)
+    factors, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
+    tight = gtsam.noiseModel.Diagonal.Sigmas(np.full(3, 1e-9))
+    factors.add(gtsam.PriorFactorPose2(20, gtsam.Pose2(*graph.poses[20]), tight))
+    for k, pose in enumerate(graph.poses):
+        values.insert(k, gtsam.Pose2(*pose))
+    for edge in graph.edges:
+        noise = gtsam.noiseModel.Gaussian.Covariance(edge.covariance)
+        r = edge.relative
+        factors.add(gtsam.BetweenFactorPose2(edge.a, edge.b, gtsam.Pose2(r.x, r.y, r.yaw_rad), noise))
+    marginals = gtsam.Marginals(factors, values)
+    for k in (21, 24):
+        yaw = graph.poses[k, 2]
+        turn = np.array([[np.cos(yaw), -np.sin(yaw), 0.0], [np.sin(yaw), np.cos(yaw), 0.0], [0.0, 0.0, 1.0]])
+        theirs = turn @ marginals.marginalCovariance(k) @ turn.T
+        assert np.allclose(ours[k], theirs, rtol=0.02, atol=1e-7)
+
+
+def test_a_closure_shortens_the_uncertainty_between_its_ends() -> None:
+    graph, truth = loop(closed=1)
+    before = relative_covariances(graph.poses, graph.edges, 24)[0]
+    assert graph.close([Edge(0, 24, truth[0].between(truth[24]), SPREAD / 16.0, True)])
+    after = relative_covariances(graph.poses, graph.edges, 24)[0]
+    assert np.trace(after) < 0.1 * np.trace(before)
+
+
+def test_a_restored_graph_has_the_same_poses_and_goes_on() -> None:
+    graph, _ = loop(closed=1)
+    again = PoseGraph()
+    again.restore(graph.poses, list(graph.edges))
+    assert np.array_equal(again.poses, graph.poses)
+    again.extend(Edge(24, 25, Pose2(0.5, 0.0, 0.0), SPREAD, False))
+    assert again.poses.shape == (26, 3)
+    assert np.allclose(again.covariance(24), graph.covariance(24), rtol=1e-3)
