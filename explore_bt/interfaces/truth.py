@@ -28,7 +28,8 @@ class GroundTruth(ABC):
     def observable_floor(self) -> OccupancyGrid:
         """The floor that can be seen from where the robot can get to.
 
-        Reachable: joined to the start by a way for the footprint. Observable: within the lidar's range
+        Reachable: joined to the start by a way for the footprint with 2.5 cm to spare on either side.
+        Observable: within the lidar's range
         and line of sight of a reachable place. Those cells are ``FREE``, all others ``UNKNOWN``.
         Computed once, on first use.
         """

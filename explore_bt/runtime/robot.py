@@ -15,6 +15,7 @@ from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
+from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.tree import Blackboard, PortUnsetError, Status, halt
 from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D
@@ -225,7 +226,7 @@ class Robot:
     def _show_gate(self) -> None:
         assert self._scan is not None
         estimate = self.slam.estimate()
-        points = estimate.T_map_base.apply(self._scan.points())
+        points = estimate.T_map_base.apply(steadied(self._scan).points())
         self.pilot.see(np.ascontiguousarray(points), self.slam.grid(), estimate)
 
     def _guarded(

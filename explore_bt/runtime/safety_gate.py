@@ -28,6 +28,8 @@ LOOK_AHEAD_M = 1.5
 """Half width of the map window looked at: more than any stop from 1 m/s needs, plus the footprint."""
 INSIDE_SHARE = 0.6
 """Share of the needed clearance below which the robot counts as standing inside an obstacle."""
+ESCAPE_SLOPE = 0.1
+"""Metres of clearance that a way out of too tight a place must win for every metre driven."""
 SAMPLE_S = 0.05
 
 
@@ -102,7 +104,9 @@ class SafetyGate:
         on_grid = self._window.clearance_m(ahead)
         to_points = _nearest_point_m(ahead, self._points)
         in_map = _shortfall(on_grid, self._radius_m + GRID_MARGIN_M, "obstacle or unknown space in the map")
-        return in_map or _shortfall(to_points, self._radius_m + SCAN_MARGIN_M, "obstacle in the scan")
+        # every scan draws its noise anew: were "no closer" enough, the robot could creep closer scan by scan
+        gain_m = ESCAPE_SLOPE * float(np.hypot(*(ahead[-1] - ahead[0])))
+        return in_map or _shortfall(to_points, self._radius_m + SCAN_MARGIN_M, "obstacle in the scan", gain_m)
 
     def _way_to_rest(
         self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float
@@ -137,18 +141,19 @@ class SafetyGate:
         )
 
 
-def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str) -> str:
+def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str, gain_m: float = 0.0) -> str:
     """Why a way with these clearances, the first of them here and now, must not be driven.
 
-    Where it is already tighter than needed the way may lead out, never closer; where the robot seems to
-    stand inside an obstacle nothing can be told, and it stays.
+    Where it is already tighter than needed the way may lead out (``gain_m`` is how much clearer it must end
+    than it begins), never closer; where the robot seems to stand inside an obstacle nothing can be told,
+    and it stays.
     """
     here, worst = float(clearance_m[0]), float(clearance_m.min())
     if worst >= needed_m:
         return ""
     if here < INSIDE_SHARE * needed_m:
         return f"the robot seems to stand {here:.2f} m from an {obstacle}, needs {needed_m:.2f} m"
-    if worst < min(needed_m, here):
+    if worst < min(needed_m, here) or (here < needed_m and clearance_m[-1] < here + gain_m):
         return f"the stop would end {worst:.2f} m from an {obstacle}, needs {needed_m:.2f} m"
     return ""
 

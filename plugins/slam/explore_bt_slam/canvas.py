@@ -133,10 +133,9 @@ class Canvas:
 
     def _make_room(self, sweep: Sweep, pose: Pose2) -> None:
         """Grow so that the sweep and the robot's body fit, by whole chunks."""
-        reached = np.vstack((pose.apply(sweep.ends), pose.apply(sweep.origins), [pose.xy]))
-        margin = self._body_m + 2.0 * self._cell_m
-        low = np.floor((reached.min(axis=0) - margin) / self._cell_m).astype(np.int64)
-        high = np.floor((reached.max(axis=0) + margin) / self._cell_m).astype(np.int64) + 1
+        margin = max(self._body_m, sweep.reach_m) + 2.0 * self._cell_m
+        low = np.floor((np.array(pose.xy) - margin) / self._cell_m).astype(np.int64)
+        high = np.floor((np.array(pose.xy) + margin) / self._cell_m).astype(np.int64) + 1
         corner = self._corner if self._cells.size else low
         end = corner + np.array(self._cells.shape[::-1])
         below = -(-np.maximum(corner - low, 0) // self._chunk) * self._chunk

@@ -55,7 +55,12 @@ class Match:
 
 
 def search(
-    grid: ScoreGrid, points: NDArray[np.float64], centre: Pose2, window_m: float, window_rad: float
+    grid: ScoreGrid,
+    points: NDArray[np.float64],
+    centre: Pose2,
+    window_m: float,
+    window_rad: float,
+    rivals: float = 0.8,
 ) -> Match:
     """The pose within the window that lays the points best onto the grid.
 
@@ -67,6 +72,8 @@ def search(
         centre: middle of the window.
         window_m: half its side.
         window_rad: half its opening.
+        rivals: poses down to this share of the best score are looked into, so that ambiguity shows;
+            1 looks for the best only, and is faster.
     """
     far = max(float(np.hypot(points[:, 0], points[:, 1]).max()), 1.0)
     step = _CELL_M / far
@@ -84,6 +91,7 @@ def search(
         _BLOCK,
         _PEAK_M,
         _PEAK_RAD,
+        rivals,
     )
     return Match(Pose2(x, y, yaw), score, runner_up)
 
@@ -144,6 +152,7 @@ def _search(
     block: int,
     peak_m: float,
     peak_rad: float,
+    rivals: float,
 ) -> tuple[float, float, float, float, float]:
     count = points.shape[0]
     side = (2 * reach + block) // block
@@ -163,8 +172,7 @@ def _search(
     found = np.zeros((bound.shape[0], 4))  # score, row offset, column offset, rotation: best of each block
     used, best = 0, -1.0
     for b in np.argsort(-bound, kind="mergesort"):
-        # blocks that could still hold a rival are searched too, or ambiguity would go unseen
-        if bound[b] < 0.8 * best:
+        if bound[b] < rivals * best:
             break
         a, k = b // (side * side), b % (side * side)
         top, top_r, top_c = -1.0, 0, 0

@@ -140,9 +140,9 @@ class FrontEnd:
         self, points: NDArray[np.float64], prior: Pose2, covariance: NDArray[np.float64]
     ) -> Alignment:
         """A doubtful match is sought again, by correlation and without the prediction's word."""
-        window_m = min(3.0 * math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1])) + 0.3, 2.0)
-        window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.2, 0.8)
-        match = search(ScoreGrid(self._points, 0.5), points[::2], prior, window_m, window_rad)
+        window_m = min(3.0 * math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1])) + 0.3, 1.0)
+        window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.2, 0.5)
+        match = search(ScoreGrid(self._points, 0.5), points[::3], prior, window_m, window_rad, rivals=1.0)
         return self._refine(points, match.pose, match.pose, np.eye(3))
 
     def _carried(self, scan: Scan2D, prediction: Pose2) -> Registered:

@@ -33,8 +33,8 @@ class InertialNoise:
 
     yaw: float = 0.002  # rad/√s
     velocity: float = 0.02  # m/s/√s
-    yaw_blind: float = 0.25
-    velocity_blind: float = 0.25
+    yaw_blind: float = 0.1
+    velocity_blind: float = 0.15
     gyro_bias_walk: float = 1e-4
     accelerometer_bias_walk: float = 2e-3
     gyro_bias: float = 0.02  # rad/s

@@ -63,30 +63,30 @@ def draw_sweep(
         body_m: radius of the disc about the base that is free because the robot is there.
         window: (4,) int64 row0, col0, row1, col1: grows to hold every cell whose class changed.
     """
-    cos, sin = np.cos(pose[2]), np.sin(pose[2])
-    for i in range(ends.shape[0]):
-        if not hit[i]:
-            continue
-        x = pose[0] + cos * ends[i, 0] - sin * ends[i, 1]
-        y = pose[1] + sin * ends[i, 0] + cos * ends[i, 1]
-        row, col = int(np.floor((y - corner[1]) / cell_m)), int(np.floor((x - corner[0]) / cell_m))
-        if drawn[row, col] != sweep_id:
+    starts = _in_cells(origins, pose, corner, cell_m)
+    tips = _in_cells(ends, pose, corner, cell_m)
+    for i in range(tips.shape[0]):
+        row, col = int(np.floor(tips[i, 1])), int(np.floor(tips[i, 0]))
+        if hit[i] and drawn[row, col] != sweep_id:
             drawn[row, col] = sweep_id
             _teach(evidence, cells, row, col, HIT, window)
-    for i in range(ends.shape[0]):
+    for i in range(tips.shape[0]):
         _clear_ray(
-            evidence,
-            cells,
-            drawn,
-            sweep_id,
-            (pose[0] + cos * origins[i, 0] - sin * origins[i, 1] - corner[0]) / cell_m,
-            (pose[1] + sin * origins[i, 0] + cos * origins[i, 1] - corner[1]) / cell_m,
-            (pose[0] + cos * ends[i, 0] - sin * ends[i, 1] - corner[0]) / cell_m,
-            (pose[1] + sin * ends[i, 0] + cos * ends[i, 1] - corner[1]) / cell_m,
-            window,
+            evidence, cells, drawn, sweep_id, starts[i, 0], starts[i, 1], tips[i, 0], tips[i, 1], window
         )
     x, y = (pose[0] - corner[0]) / cell_m, (pose[1] - corner[1]) / cell_m
     _clear_disc(evidence, cells, drawn, sweep_id, x, y, body_m / cell_m, window)
+
+
+@njit(cache=True)
+def _in_cells(points: Singles, pose: Floats, corner: Floats, cell_m: float) -> Floats:
+    """(N, 2) x, y on the canvas, in cells, of points in the base frame."""
+    out = np.empty((points.shape[0], 2))
+    cos, sin = np.cos(pose[2]), np.sin(pose[2])
+    for i in range(points.shape[0]):
+        out[i, 0] = (pose[0] + cos * points[i, 0] - sin * points[i, 1] - corner[0]) / cell_m
+        out[i, 1] = (pose[1] + sin * points[i, 0] + cos * points[i, 1] - corner[1]) / cell_m
+    return out
 
 
 @njit(cache=True)

@@ -16,6 +16,7 @@ __all__ = ["Alignment", "align"]
 
 _RADIUS_M = 0.15
 _ITERATIONS = 12
+_KERNEL_M = 0.05
 _GOOD_RESIDUAL_M = 0.03
 
 
@@ -150,39 +151,22 @@ def _align(
     iterations: int,
 ) -> tuple[Floats, Floats, int, float, int]:
     pose = guess.copy()
-    H = np.zeros((3, 3))
+    H, g = np.zeros((3, 3)), np.zeros(3)
     matched, squares, usable = 0, 0.0, 0
-    kernel = 0.05
     for _ in range(iterations):
-        H[:, :] = 0.0
-        g = np.zeros(3)
-        matched, squares, usable, weight_sum = 0, 0.0, 0, 0.0
-        cos, sin = np.cos(pose[2]), np.sin(pose[2])
+        H[:, :], g[:] = 0.0, 0.0
+        matched, squares, usable = 0, 0.0, 0
+        weights = 0.0
         for i in range(points.shape[0]):
             if normals[i, 0] == 0.0 and normals[i, 1] == 0.0:
                 continue
             usable += 1
-            qx = cos * points[i, 0] - sin * points[i, 1]
-            qy = sin * points[i, 0] + cos * points[i, 1]
-            nx = cos * normals[i, 0] - sin * normals[i, 1]
-            ny = sin * normals[i, 0] + cos * normals[i, 1]
-            k = _nearest(
-                pose[0] + qx, pose[1] + qy, nx, ny, map_points, map_normals, index, origin, cell, radius
+            r, w = _add_point(
+                H, g, points[i], normals[i], map_points, map_normals, index, origin, cell, pose, sigma, radius
             )
-            if k < 0:
-                continue
-            mx, my = map_normals[k, 0], map_normals[k, 1]
-            r = mx * (pose[0] + qx - map_points[k, 0]) + my * (pose[1] + qy - map_points[k, 1])
-            matched += 1
-            squares += r * r
-            w = 1.0 / (1.0 + (r / kernel) ** 2) ** 2 / sigma**2
-            weight_sum += w
-            J = (mx, my, my * qx - mx * qy)
-            for a in range(3):
-                g[a] += w * J[a] * r
-                for b in range(3):
-                    H[a, b] += w * J[a] * J[b]
-        _leave_noise_out(H, g, weight_sum)
+            if w > 0.0:
+                matched, squares, weights = matched + 1, squares + r * r, weights + w
+        _leave_noise_out(H, g, weights)
         off = pose - prior
         off[2] = (off[2] + np.pi) % (2.0 * np.pi) - np.pi
         step = np.linalg.solve(H + prior_H + np.eye(3) * 1e-9, g + prior_H @ off)
@@ -190,6 +174,40 @@ def _align(
         if np.hypot(step[0], step[1]) < 1e-5 and abs(step[2]) < 1e-5:
             break
     return pose, H, matched, squares, usable
+
+
+@njit(cache=True)
+def _add_point(
+    H: Floats,
+    g: Floats,
+    point: Floats,
+    normal: Floats,
+    map_points: Floats,
+    map_normals: Floats,
+    index: Ints32,
+    origin: Floats,
+    cell: float,
+    pose: Floats,
+    sigma: float,
+    radius: float,
+) -> tuple[float, float]:
+    """Add one point to the normal equations; returns its distance and weight, 0 without a line."""
+    cos, sin = np.cos(pose[2]), np.sin(pose[2])
+    qx, qy = cos * point[0] - sin * point[1], sin * point[0] + cos * point[1]
+    nx, ny = cos * normal[0] - sin * normal[1], sin * normal[0] + cos * normal[1]
+    x, y = pose[0] + qx, pose[1] + qy
+    k = _nearest(x, y, nx, ny, map_points, map_normals, index, origin, cell, radius)
+    if k < 0:
+        return 0.0, 0.0
+    mx, my = map_normals[k, 0], map_normals[k, 1]
+    r = mx * (x - map_points[k, 0]) + my * (y - map_points[k, 1])
+    w = 1.0 / (1.0 + (r / _KERNEL_M) ** 2) ** 2 / sigma**2
+    J = (mx, my, my * qx - mx * qy)
+    for a in range(3):
+        g[a] += w * J[a] * r
+        for b in range(3):
+            H[a, b] += w * J[a] * J[b]
+    return r, w
 
 
 @njit(cache=True)

@@ -19,9 +19,10 @@ class Sweep:
     Attributes:
         origins, ends: (N, 2) float32, metres: where each beam began, and where it hit or was cut off.
         hit: (N,) bool: True for a return, False for "nothing up to the end".
+        reach_m: nothing of the sweep lies farther from the base.
     """
 
-    __slots__ = ("ends", "hit", "origins", "stamp_s")
+    __slots__ = ("ends", "hit", "origins", "reach_m", "stamp_s")
 
     def __init__(
         self,
@@ -34,6 +35,8 @@ class Sweep:
         self.origins = origins
         self.ends = ends
         self.hit = hit
+        both = (np.hypot(part[:, 0], part[:, 1]) for part in (origins, ends))
+        self.reach_m = max((float(part.max()) for part in both if part.size), default=0.0)
 
     @property
     def points(self) -> NDArray[np.float64]:

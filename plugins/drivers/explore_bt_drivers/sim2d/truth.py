@@ -9,7 +9,10 @@ from explore_bt.types import OccupancyGrid, Pose2
 from explore_bt_drivers.sim2d.body import Body
 from explore_bt_drivers.world import World, observable_floor
 
-__all__ = ["Sim2dTruth"]
+__all__ = ["SPARE_M", "Sim2dTruth"]
+
+SPARE_M = 0.025
+"""A way counts only if it leaves this much on either side: through an exact fit no lidar guides a robot."""
 
 
 class Sim2dTruth(GroundTruth):
@@ -41,4 +44,4 @@ class Sim2dTruth(GroundTruth):
 
     @cached_property
     def _floor(self) -> OccupancyGrid:
-        return observable_floor(self._world, self._start.xy, self._radius_m, self._range_m)
+        return observable_floor(self._world, self._start.xy, self._radius_m + SPARE_M, self._range_m)
