@@ -8,6 +8,7 @@ from explore_bt.behaviours.give_up_goal import GivenUp, GiveUpGoal
 from explore_bt.behaviours.record_waypoint import RecordWaypoint
 from explore_bt.behaviours.reset_half_planes import ResetHalfPlanes
 from explore_bt.behaviours.stop_requested import StopRequested
+from explore_bt.behaviours.take_back import TakeBack
 from explore_bt.behaviours.turn import Turn
 from explore_bt.behaviours.wait import Wait
 from explore_bt.behaviours.wait_until_localised import WaitUntilLocalised
@@ -24,6 +25,7 @@ __all__ = [
     "RecordWaypoint",
     "ResetHalfPlanes",
     "StopRequested",
+    "TakeBack",
     "Turn",
     "Wait",
     "WaitUntilLocalised",
@@ -39,6 +41,7 @@ LEAVES = (
     RecordWaypoint,
     ResetHalfPlanes,
     StopRequested,
+    TakeBack,
     Turn,
     Wait,
     WaitUntilLocalised,

@@ -16,6 +16,7 @@ __all__ = ["DriveTo"]
 
 _LOOK_PERIOD_S = 1.0
 _WATCHED_M = 4.0
+_TIGHT_POSES_AHEAD = 2  # about 0.2 m: the gate's brake ends before the place itself
 
 
 class DriveTo(Leaf):
@@ -84,12 +85,21 @@ class DriveTo(Leaf):
         return Status.RUNNING
 
     def _plan_after_hold(self, reason: str) -> Status:
+        """Another plan; from the second hold on without the place ahead, which is then too tight."""
         self._held += 1
         if self._held > self.replans:
             self.failure = "held"
             self.say(f"gave up after {self._held} holds: {reason or 'the safety gate braked'}")
             return Status.FAILURE
+        if self._held > 1 and self.robot.pilot.blocked_s > 0.0:
+            self.robot.avoid(self._place_ahead())
         return self._plan()
+
+    def _place_ahead(self) -> tuple[float, float]:
+        assert self._path is not None
+        ahead = _ahead(self._path, self.robot.estimate().T_map_base)
+        x, y = ahead[min(_TIGHT_POSES_AHEAD, len(ahead) - 1), :2]
+        return (float(x), float(y))
 
     def _is_cut(self) -> bool:
         """Whether the way ahead has become too tight in the newest map."""

@@ -100,7 +100,7 @@ class FindViewpoint(Leaf):
 
     def _give_up(self, place: Viewpoint) -> None:
         reason = f"still {place.gain_m2:.1f} m² unknown after looking from here"
-        self.given_up = (*self._tried(), GivenUp(place.xy, reason, place.frontier.centroid))
+        self.given_up = (*self._tried(), GivenUp(place.xy, reason, place.frontier.centroid, was_seen=True))
 
     def _is_given_up(self, frontier: Frontier) -> bool:
         """Whether enough places that were to show this frontier have failed."""

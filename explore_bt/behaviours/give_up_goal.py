@@ -12,11 +12,16 @@ __all__ = ["GiveUpGoal", "GivenUp"]
 
 @dataclass(frozen=True, slots=True)
 class GivenUp:
-    """A place that is not tried again, why, and the frontier it was to show; metres, ``map`` frame."""
+    """A place that is not tried again, why, and the frontier it was to show; metres, ``map`` frame.
+
+    Attributes:
+        was_seen: whether the robot looked from there, in vain; else it never got there.
+    """
 
     position: tuple[float, float]
     reason: str
     looks_at: tuple[float, float] | None = None
+    was_seen: bool = False
 
 
 class GiveUpGoal(Leaf):

@@ -47,6 +47,11 @@ class Driver(Plugin):
         """What the body can do; the mission may ask for less."""
 
     @property
+    def command_delay_s(self) -> float:
+        """How long the body lags behind its commands; what it still has to drive counts as driven."""
+        return 0.0
+
+    @property
     @abstractmethod
     def start(self) -> Pose2:
         """Pose of ``base_link`` in ``map`` at set-up: as given, or as the driver chose."""

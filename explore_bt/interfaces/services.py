@@ -90,3 +90,9 @@ class RobotServices(Protocol):
 
     def plan(self, goal: Pose2) -> Path:
         """A path from here, by the mission's planner; raises a ``PlanningFailure``."""
+
+    def avoid(self, position: tuple[float, float]) -> None:
+        """Close a place (x, y, metres, ``map`` frame) that proved too tight: plans and maps shun it."""
+
+    def forget_avoided(self) -> int:
+        """Open all such places again; how many there were."""

@@ -25,7 +25,7 @@ class Pilot:
         self._controller = controller
         self._gate = gate
         self._driver = driver
-        self._predictor = PosePredictor()
+        self._predictor = PosePredictor(driver.command_delay_s)
         self.motion = MotionState()
         self.path: Path | None = None
         self.gate_reason = ""

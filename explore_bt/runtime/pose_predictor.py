@@ -14,9 +14,15 @@ _MEMORY_S = 2.0
 
 
 class PosePredictor:
-    """Carries an estimate forward along the commands that were sent since its stamp."""
+    """Carries an estimate forward along the commands that the body had not done at its stamp.
 
-    def __init__(self) -> None:
+    Args:
+        delay_s: how long the body lags behind its commands. The pose predicted is the one it will have
+            reached when it has done all that was sent.
+    """
+
+    def __init__(self, delay_s: float = 0.0) -> None:
+        self._delay_s = delay_s
         self._sent: deque[tuple[float, MotionState, MotionState]] = deque()
 
     def sent(self, time_s: float, before: MotionState, after: MotionState) -> None:
@@ -30,7 +36,7 @@ class PosePredictor:
         pose = estimate.T_map_base
         for index, (begin_s, before, after) in enumerate(self._sent):
             end_s = self._sent[index + 1][0] if index + 1 < len(self._sent) else now_s
-            start_s, stop_s = max(begin_s, estimate.stamp_s), min(end_s, now_s)
+            start_s, stop_s = max(begin_s, estimate.stamp_s - self._delay_s), min(end_s, now_s)
             if stop_s <= start_s:
                 continue
             middle = (0.5 * (start_s + stop_s) - begin_s) / (end_s - begin_s)

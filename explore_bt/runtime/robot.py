@@ -17,6 +17,7 @@ from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
+from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.tree import Blackboard, PortUnsetError, Status, halt
 from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D
 
@@ -50,6 +51,7 @@ class Robot:
         self.tree = build_tree(spec.tree, self, self.blackboard)
         self._scan: Scan2D | None = None
         self._view: MapView | None = None
+        self._tight = TightPlaces()
         self._slam_fault = ""
         self._health = Health.OK
         self._gate_reason = ""
@@ -113,8 +115,8 @@ class Robot:
         return estimate
 
     def view(self) -> MapView:
-        """The newest map."""
-        grid = self.slam.grid()
+        """The newest map, with the places that proved too tight closed."""
+        grid = self._tight.mark(self.slam.grid())
         if self._view is None or self._view.grid is not grid:
             self._view = MapView(grid)
         return self._view
@@ -141,6 +143,18 @@ class Robot:
             failure = ComponentFailure(f"planner {self._planner.name}", repr(error))
             self.tell("error", failure.component, failure.reason)
             raise failure from error
+
+    def avoid(self, position: tuple[float, float]) -> None:
+        """Close a place that proved too tight for the safety gate."""
+        self._tight.add(position)
+        x, y = position
+        self.tell("warning", "tight place", f"({x:.2f}, {y:.2f}) is closed: the gate held the robot there")
+
+    def forget_avoided(self) -> int:
+        """Open all such places again; how many there were."""
+        count = len(self._tight)
+        self._tight.forget()
+        return count
 
     # --- what the runner calls, in this order, every control period -----------------------------------
 
@@ -193,7 +207,7 @@ class Robot:
         return RobotSnapshot(
             robot=self.name,
             estimate=self.estimate(),
-            grid=self.view().grid,
+            grid=self.slam.grid(),
             scan=self._scan,
             path=self.pilot.path,
             motion=self.pilot.motion,

@@ -122,7 +122,7 @@ class Runner:
     def _show(self) -> None:
         final = self._phase is _Phase.OVER
         for robot in self._robots:
-            robot.scores.map_step(robot.view().grid, self.now_s, final=final)
+            robot.scores.map_step(robot.slam.grid(), self.now_s, final=final)
         snapshots = tuple(robot.snapshot() for robot in self._robots)
         self._observers.tick(TickSnapshot(self._tick, self.now_s, snapshots))
         self._tick += 1

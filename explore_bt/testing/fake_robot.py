@@ -50,6 +50,7 @@ class FakeRobot:
         self.grid = grid
         self.latest_scan: Scan2D | None = full_circle_scan()
         self.refusal: PlanningFailure | None = None
+        self.avoided: list[tuple[float, float]] = []
 
     def now_s(self) -> float:
         """``time_s``."""
@@ -66,6 +67,16 @@ class FakeRobot:
     def scan(self) -> Scan2D | None:
         """``latest_scan``."""
         return self.latest_scan
+
+    def avoid(self, position: tuple[float, float]) -> None:
+        """Remember it in ``avoided``."""
+        self.avoided.append(position)
+
+    def forget_avoided(self) -> int:
+        """Empty ``avoided``."""
+        count = len(self.avoided)
+        self.avoided.clear()
+        return count
 
     def plan(self, goal: Pose2) -> Path:
         """A straight line, or the ``refusal``."""

@@ -47,6 +47,7 @@ def test_a_robot_held_by_the_gate_plans_anew_and_gives_up_in_the_end() -> None:
     assert leaf.status is Status.FAILURE
     assert len(robot.pilot.followed) == 3
     assert leaf.blackboard["failure"] == "held"
+    assert len(robot.avoided) == 1  # the second hold closed the place ahead
 
 
 def test_an_obstacle_that_appears_on_the_way_ahead_brings_a_new_plan() -> None:

@@ -6,9 +6,11 @@ import pytest
 from explore_bt.behaviours import (
     LEAVES,
     ChooseHome,
+    GivenUp,
     RecordWaypoint,
     ResetHalfPlanes,
     StopRequested,
+    TakeBack,
     Turn,
     Wait,
     WaitUntilLocalised,
@@ -140,3 +142,27 @@ def test_a_lost_slam_is_waited_for_and_then_given_up(robot: FakeRobot, board: Bl
         statuses.append(leaf.status)
     assert statuses == [Status.RUNNING, Status.RUNNING, Status.FAILURE]
     assert "few inliers" in leaf.feedback_message
+
+
+def test_tight_places_and_unreached_goals_are_taken_back_as_often_as_allowed(
+    robot: FakeRobot, board: Blackboard
+) -> None:
+    leaf = TakeBack("take back", robot, board, {"times": 2})
+    leaf.tick_once()
+    assert leaf.status is Status.FAILURE  # there was nothing
+    seen = GivenUp((2.0, 2.0), "still 0.3 m² unknown", was_seen=True)
+    statuses = []
+    for _ in range(3):
+        robot.avoid((1.0, 1.0))
+        board.write("given_up", (GivenUp((1.0, 1.0), "no_path"), seen))
+        leaf.tick_once()
+        statuses.append(leaf.status)
+    assert statuses == [Status.SUCCESS, Status.SUCCESS, Status.FAILURE]
+    assert robot.avoided == [(1.0, 1.0)]  # the third round was refused
+
+
+def test_what_was_looked_at_in_vain_stays_given_up(robot: FakeRobot, board: Blackboard) -> None:
+    seen = GivenUp((2.0, 2.0), "still 0.3 m² unknown", was_seen=True)
+    board.write("given_up", (GivenUp((1.0, 1.0), "held"), seen))
+    TakeBack("take back", robot, board).tick_once()
+    assert board["given_up"] == (seen,)

@@ -24,6 +24,14 @@ def test_an_old_estimate_is_carried_along_the_commands_sent_since() -> None:
         assert predicted.stamp_s == pytest.approx(20 * DT)
 
 
+def test_what_a_lagging_body_still_has_to_drive_counts_as_driven() -> None:
+    predictor, steady = PosePredictor(delay_s=0.025), MotionState(Twist2(0.4, 0.0))
+    for step in range(20):
+        predictor.sent(step * DT, steady, steady)
+    predicted = predictor.predict(Estimate(0.5, Pose2(0.0, 0.0, 0.0)), 20 * DT)
+    assert predicted.T_map_base.x == pytest.approx(0.4 * (0.5 + 0.025))
+
+
 def _finely_integrated(pose: Pose2, before: Twist2, after: Twist2) -> Pose2:
     x, y, yaw = pose.x, pose.y, pose.yaw_rad
     for share in (np.arange(100) + 0.5) / 100:

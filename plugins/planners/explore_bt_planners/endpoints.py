@@ -14,7 +14,7 @@ from explore_bt_planners.ascent import ascend, nearest_target
 from explore_bt_planners.sampling import clearance_at
 from explore_bt_planners.terrain import SLACK_M, Terrain
 
-__all__ = ["Departure", "depart", "settle"]
+__all__ = ["Departure", "check_start", "depart", "settle"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,10 +33,30 @@ class Departure:
     clearance_m: float
 
 
-def depart(terrain: Terrain, start: Pose2, footprint_radius_m: float, within_m: float) -> Departure:
+def check_start(terrain: Terrain, start: Pose2) -> None:
+    """Whether the robot can stand at the start at all.
+
+    Raises:
+        StartBlocked: it lies outside of the map or in an occupied cell.
+    """
+    cell = terrain.grid.cell_of(start.x, start.y)
+    if not terrain.grid.contains_cell(*cell):
+        raise StartBlocked(_at("the start", start, terrain, ""))
+    if terrain.grid.cells[cell] == OCCUPIED:
+        raise StartBlocked(_at("the start", start, terrain, "an occupied cell"))
+
+
+def depart(
+    terrain: Terrain,
+    start: Pose2,
+    footprint_radius_m: float,
+    within_m: float,
+    goal_cell: tuple[int, int],
+) -> Departure:
     """The way out of a start that may be tighter than the robot needs.
 
-    Cells that nobody has seen under the robot's own footprint are walked: it stands on them.
+    Cells that nobody has seen under the robot's own footprint are walked: it stands on them. A start in
+    the middle of a narrow passage is left to the goal's side. The start has passed ``check_start``.
 
     Raises:
         StartBlocked: no passable cell can be reached within ``within_m``.
@@ -44,17 +64,17 @@ def depart(terrain: Terrain, start: Pose2, footprint_radius_m: float, within_m: 
     grid = terrain.grid
     cell = grid.cell_of(start.x, start.y)
     point = np.array([terrain.to_cells(start.x, start.y)])
-    if not grid.contains_cell(*cell) or grid.cells[cell] == OCCUPIED:
-        raise StartBlocked(
-            _at("the start", start, terrain, "an occupied cell" if grid.contains_cell(*cell) else "")
-        )
     clearance = float(clearance_at(terrain.clearance_m, point[0, 0], point[0, 1]))
     if clearance >= terrain.threshold_m - SLACK_M:
         return Departure(point, cell, clearance)
     way = ascend(terrain.transform.squared, grid.free, terrain.passable, *cell)
-    if not terrain.passable[tuple(way[-1])] or _span(way) * grid.resolution_m > within_m:
+    goal_side = terrain.passable & (terrain.component == terrain.component[goal_cell])
+    if not goal_side[tuple(way[-1])] or _span(way) * grid.resolution_m > within_m:
         walkable = grid.free | (grid.unknown & _disc(terrain, cell, footprint_radius_m))
-        around = nearest_target(walkable, terrain.passable, cell, within_m / grid.resolution_m)
+        reach = within_m / grid.resolution_m
+        around = nearest_target(walkable, goal_side, cell, reach)
+        if around is None:
+            around = nearest_target(walkable, terrain.passable, cell, reach)
         if around is None:
             raise StartBlocked(
                 f"the start ({start.x:.2f}, {start.y:.2f}) has {clearance:.2f} m of clearance, the footprint "

@@ -16,7 +16,7 @@ from explore_bt.interfaces import Planner, PluginOptions, RobotContext, never
 from explore_bt.types import OccupancyGrid, Path, Pose2
 from explore_bt.units import Length
 from explore_bt_planners.bottleneck import widest_squared
-from explore_bt_planners.endpoints import Departure, depart, settle
+from explore_bt_planners.endpoints import Departure, check_start, depart, settle
 from explore_bt_planners.polyline import without_repeats
 from explore_bt_planners.sampling import clearances_at, segment_clearance
 from explore_bt_planners.search import ClearancePrice
@@ -36,7 +36,9 @@ _SAME_PLACE_M = 0.02
 class FieldPlannerOptions(PluginOptions):
     """Options of every planner on a clearance field."""
 
-    margin: Length = Field(0.02, ge=0.0, description="clearance kept beyond the footprint where there is a way")
+    margin: Length = Field(
+        0.02, ge=0.0, description="clearance kept beyond the footprint where there is a way"
+    )
     goal_tolerance: Length = Field(
         0.3,
         ge=0.0,
@@ -90,8 +92,9 @@ class FieldPlanner(Planner):
         if cancelled():
             raise Cancelled("the plan was cancelled by its caller")
         terrain = self._terrains.terrain(grid, footprint_radius_m + margin_m)
-        departure = depart(terrain, start, footprint_radius_m, self._options.leave_within)
+        check_start(terrain, start)
         arrival, goal_cell = settle(terrain, goal, self._options.goal_tolerance)
+        departure = depart(terrain, start, footprint_radius_m, self._options.leave_within, goal_cell)
         self._check_connected(terrain, departure.cell, goal_cell, start, goal)
         apart = float(np.hypot(*(arrival - departure.points[0]))) * grid.resolution_m
         if apart < _SAME_PLACE_M:

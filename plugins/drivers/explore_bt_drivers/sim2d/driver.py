@@ -61,6 +61,11 @@ class Sim2d(Driver):
         return self._running()
 
     @property
+    def command_delay_s(self) -> float:
+        """Half a control period at 20 Hz: the body glides from one command to the next."""
+        return 0.025
+
+    @property
     def footprint_radius_m(self) -> float:
         """Radius of the circular footprint."""
         return self._options.radius
