@@ -10,7 +10,7 @@ from explore_bt_planners import GridAstar, Skeleton
 from explore_bt_planners.feature_transform import feature_transform
 from explore_bt_planners.terrain import Terrain
 
-from explore_bt.errors import GoalBlocked, NoPath, StartBlocked
+from explore_bt.errors import GoalBlocked, GoalUnknown, NoPath, StartBlocked
 from explore_bt.exploration.clearance import clearance_field
 from explore_bt.testing.planner_contract import exact_clearance, points_along
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
