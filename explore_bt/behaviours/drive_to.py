@@ -91,7 +91,7 @@ class DriveTo(Leaf):
             self.failure = "held"
             self.say(f"gave up after {self._held} holds: {reason or 'the safety gate braked'}")
             return Status.FAILURE
-        if self._held > 1 and self.robot.pilot.blocked_s > 0.0:
+        if self._held > 1 and self.robot.pilot.is_blocked_by_obstacle:
             self.robot.avoid(self._place_ahead())
         return self._plan()
 

@@ -12,12 +12,12 @@ from explore_bt.behaviours.give_up_goal import GivenUp
 from explore_bt.exploration import (
     FreeSector,
     HalfPlaneHistory,
+    clearance_at,
     find_free_sectors,
     next_waypoint,
     repeated_visit,
     visible_unknown_area,
 )
-from explore_bt.exploration.clearance import clearance_at
 from explore_bt.tree import Input, Key, Leaf, Output, Status
 from explore_bt.types import Pose2, Scan2D, Waypoint
 from explore_bt.units import Area, Length

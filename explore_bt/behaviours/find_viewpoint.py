@@ -22,6 +22,7 @@ from explore_bt.units import Area, Length
 __all__ = ["FindViewpoint"]
 
 _HERE_M = 0.3
+_SQUEEZE_M = 0.02  # the map's cells are coarser than this: where nothing else is left, the gate decides
 _SAME_FRONTIER_M = 0.5
 _TRIES = 3
 _WORTH_M_PER_M2 = 0.3
@@ -61,7 +62,7 @@ class FindViewpoint(Leaf):
 
     def update(self) -> Status:
         """Choose among all viewpoints of the newest map; through tight passages only for want of others."""
-        for margin_m in dict.fromkeys((self.margin, 0.0)):
+        for margin_m in dict.fromkeys((self.margin, 0.0, -_SQUEEZE_M)):
             choice = self._choice(margin_m)
             while choice.viewpoints:
                 best = min(choice.viewpoints, key=_cost_m)

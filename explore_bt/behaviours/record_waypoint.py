@@ -40,7 +40,7 @@ class RecordWaypoint(Leaf):
         visited = self.recall("visited", ())
         self.visited = (*visited, waypoint)
         history = self.recall("history", HalfPlaneHistory())
-        self.history = history.push(HalfPlane(waypoint.position, waypoint.heading_rad))
+        self.history = history.push(HalfPlane.ahead_of(waypoint.pose))
         x, y = waypoint.position
         self.say(f"waypoint {len(visited)} at ({x:.1f}, {y:.1f})")
         return Status.SUCCESS

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from datetime import datetime
 from pathlib import Path
 
@@ -48,7 +49,7 @@ def new_run_folder(out: Path | None, mission: str) -> Path:
     """The folder for a run's files, not made yet: ``out``, else ``runs/<mission>-<time>``.
 
     Raises:
-        UserError: it exists and holds something; runs are never mixed or overwritten.
+        UserError: it holds something (runs are never mixed or overwritten), or cannot be made.
     """
     folder = out or _free(Path("runs") / f"{mission}-{datetime.now():%Y%m%d-%H%M%S}")
     if folder.is_file():
@@ -57,6 +58,11 @@ def new_run_folder(out: Path | None, mission: str) -> Path:
         raise UserError(
             f"{folder} is not empty; a run never overwrites another, name a new folder with --out"
         )
+    above = next(each for each in (folder, *folder.absolute().parents) if each.exists())
+    if not above.is_dir():
+        raise UserError(f"{folder} cannot be made: {above} is a file; name another folder with --out")
+    if not os.access(above, os.W_OK | os.X_OK):
+        raise UserError(f"{folder}: you may not write into {above}; name another folder with --out")
     return folder
 
 

@@ -37,5 +37,7 @@ def schema(
         return
     if not out.parent.is_dir():
         raise UserError(f"there is no folder {out.parent} to write {out.name} into; make it first")
+    if out.is_dir():
+        raise UserError(f"{out} is a folder; name a file in it, for example {out / 'schema.json'}")
     write_whole(out, text)
     typer.echo(f"{out} written")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import zlib
 from abc import ABC
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -67,7 +66,6 @@ class RobotContext:
     footprint_radius_m: float = 0.25
     limits: MotionLimits = MotionLimits()
     truth: GroundTruth | None = None
-    run_dir: Path | None = None
 
     def rng(self, stream: str) -> np.random.Generator:
         """An independent generator for one named use; the same seed, robot and name give the same."""

@@ -42,7 +42,11 @@ class Pilot(Protocol):
 
     @property
     def blocked_s(self) -> float:
-        """For how long the safety gate has been braking without a break, seconds; 0 while it passes."""
+        """For how long the robot has been braked for without a break, seconds; 0 while commands pass."""
+
+    @property
+    def is_blocked_by_obstacle(self) -> bool:
+        """Whether what brakes is the gate's look at the way ahead, not a lost SLAM or a stale scan."""
 
 
 class RobotServices(Protocol):

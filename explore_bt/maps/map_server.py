@@ -154,7 +154,13 @@ def _pixels(image: Path, source: Path) -> NDArray[np.unsignedinteger]:
 def _decode(data: bytes) -> NDArray[np.unsignedinteger] | None:
     if not data:
         return None
+    told = cv2.utils.logging.getLogLevel()
+    cv2.utils.logging.setLogLevel(
+        cv2.utils.logging.LOG_LEVEL_SILENT
+    )  # the refusal says it once, in our words
     try:
         return cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error:
         return None
+    finally:
+        cv2.utils.logging.setLogLevel(told)

@@ -37,8 +37,12 @@ class MarkedFile:
             node = yaml.compose(self.path.read_text(encoding="utf-8"), Loader=_Loader)
         except FileNotFoundError:
             raise WorldError(f"{self.path}: there is no such file; give the path of {noun}") from None
-        except (OSError, UnicodeDecodeError) as error:
-            raise WorldError(f"{self.path}: cannot be read as text ({error}); give {noun}") from None
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise WorldError(f"{self.path}: cannot be read ({reason}); give the path of {noun}") from None
+        except UnicodeDecodeError as error:
+            fault = f"is no text (byte {error.start} is not UTF-8)"
+            raise WorldError(f"{self.path}: {fault}; give the YAML file of {noun}") from None
         except yaml.MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             place = f"{self.path}:{mark.line + 1}:{mark.column + 1}" if mark else str(self.path)

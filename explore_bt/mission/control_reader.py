@@ -28,9 +28,15 @@ class ControlReader:
     """Reads control nodes; what is below them is read by ``read_node``."""
 
     def __init__(
-        self, trees: Mapping[str, Entry], used: set[str], read_node: ReadNode, faults: Faults
+        self,
+        trees: Mapping[str, Entry],
+        is_whole: bool,
+        used: set[str],
+        read_node: ReadNode,
+        faults: Faults,
     ) -> None:
         self._trees = trees
+        self._is_whole = is_whole
         self._used = used
         self._read_node = read_node
         self._faults = faults
@@ -118,8 +124,9 @@ class ControlReader:
             return ()
         name = value.data
         if name not in self._trees:
-            hint = did_you_mean(name, self._trees, "trees")
-            self._faults.add(value.place, f'there is no tree "{name}"', hint)
+            if self._is_whole:
+                hint = did_you_mean(name, self._trees, "trees")
+                self._faults.add(value.place, f'there is no tree "{name}"', hint)
             return ()
         if name in spot.trees:
             way = " -> ".join((*spot.trees[spot.trees.index(name) :], name))

@@ -35,19 +35,24 @@ _MOST_FILES = 50
 
 @dataclass
 class MissionText:
-    """The mission's own mapping, and the parameters and trees of all files."""
+    """The mission's own mapping, and the parameters and trees of all files.
+
+    Attributes:
+        is_whole: False once an included file could not be read; the fault is noted.
+    """
 
     source: Source
     root: Entries
     params: dict[str, Entry] = field(default_factory=dict)
     trees: dict[str, Entry] = field(default_factory=dict)
     included: dict[Path, Source] = field(default_factory=dict)
+    is_whole: bool = True
 
 
 def read_files(path: Path, faults: Faults) -> MissionText | None:
     """The mission file and all it includes; None if it cannot be read as a mapping at all."""
     head = Source(str(path), "", path.parent, has_lines=False)
-    text = _read_text(path, head.place(), f"{path}", faults)
+    text = _read_text(path, head.place(), "the mission", faults)
     if text is None:
         return None
     source = Source(str(path), text, path.parent)
@@ -105,7 +110,8 @@ class _Collector:
         self._gather(root, "params", "{stride: {type: length, default: 1 m}}", self._mission.params)
         self._gather(root, "trees", "{go: {sequence: [...]}}", self._mission.trees)
         for value in expect_items(root.get("include"), "include", "[trees/complete.yaml]", self._faults):
-            self._include(value, way)
+            if not self._include(value, way):
+                self._mission.is_whole = False
 
     def _check_included_keys(self, root: Entries) -> None:
         for entry in root:
@@ -134,32 +140,35 @@ class _Collector:
             else:
                 into[entry.key] = entry
 
-    def _include(self, value: Value, way: tuple[Path, ...]) -> None:
+    def _include(self, value: Value, way: tuple[Path, ...]) -> bool:
+        """Whether the file's content is there now."""
         if not isinstance(value, Scalar) or not isinstance(value.data, str) or not value.data:
             self._faults.add(value.place, f"include: {written(value)} is not a file name")
-            return
+            return False
         named = value.place.source.folder / value.data
         real = self._real_path(named, value)
         if real is None:
-            return
+            return False
         if real in way:
             round_trip = " -> ".join(each.name for each in (*way[way.index(real) :], real))
             self._faults.add(value.place, f"files include one another: {round_trip}", "remove one include")
-            return
+            return True
         if real in self._mission.included:
-            return
+            return True
         if len(self._mission.included) >= _MOST_FILES:
             self._faults.add(value.place, f"more than {_MOST_FILES} included files")
-            return
+            return False
         text = _read_text(real, value.place, value.data, self._faults)
         if text is None:
-            return
+            return False
         shown = os.path.join(os.path.dirname(value.place.source.name), value.data)
         source = Source(os.path.normpath(shown), text, named.parent)
         self._mission.included[real] = source
         root = _mapping(source, self._faults)
-        if root is not None:
-            self.collect(root, INCLUDE_KEYS, (*way, real))
+        if root is None:
+            return False
+        self.collect(root, INCLUDE_KEYS, (*way, real))
+        return True
 
     def _real_path(self, named: Path, value: Scalar) -> Path | None:
         """Where the file really is; None (and a fault) if that is outside the mission's folder."""

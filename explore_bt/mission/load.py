@@ -18,7 +18,7 @@ from explore_bt.mission.model import Mission, RobotSpec
 from explore_bt.mission.nodes import NodeSpec
 from explore_bt.mission.overrides import SECTIONS, Override, overridden, params_overridden, read_overrides
 from explore_bt.mission.params import PLUGIN_KINDS, Param, param_value, read_param
-from explore_bt.mission.reading import expect_entries, expect_items, expect_text, written
+from explore_bt.mission.reading import expect_entries, expect_items, expect_text, is_null, written
 from explore_bt.mission.references import BROKEN, Scope, resolve
 from explore_bt.mission.robots import read_robot, unknown_plugin
 from explore_bt.mission.source import Place
@@ -142,13 +142,9 @@ class _Loader:
                 unknown_plugin(self._catalog, kind, name, value.place, self._faults)
 
     def _robots(self, params: Mapping[str, object]) -> tuple[RobotSpec, ...]:
-        entries = expect_entries(self._root.get("robots"), "robots", "robots: {robot: {...}}", self._faults)
-        if entries is None or not entries.entries:
-            self._faults.add(self._root.place, "the mission has no robots", "write robots: {robot: {...}}")
-            entries = Entries((), self._root.place)
-        reader = TreeReader(self._text.trees, self._catalog, self._faults)
+        reader = TreeReader(self._text.trees, self._text.is_whole, self._catalog, self._faults)
         robots = []
-        for entry in entries:
+        for entry in self._robot_entries():
             scope = Scope(params, self._environ, entry.key)
 
             def read_tree(own: Value | None, place: Place, scope: Scope = scope) -> NodeSpec | None:
@@ -157,6 +153,16 @@ class _Loader:
             robots.append(read_robot(entry, scope, self._catalog, read_tree, self._faults))
         reader.check_unused(Scope(params, self._environ, "robot"))
         return tuple(robot for robot in robots if robot is not None)
+
+    def _robot_entries(self) -> Entries:
+        section = self._root.by_key.get("robots")
+        value = section.value if section else None
+        example = "robots: {robot: {...}}"
+        entries = expect_entries(value, "robots", example, self._faults) or Entries((), self._root.place)
+        if is_null(value) or (isinstance(value, Entries) and not value.entries):
+            place = section.place if section else self._root.place
+            self._faults.add(place, "the mission has no robots", f"write {example}")
+        return entries
 
     def _tree(self, reader: TreeReader, own: Value | None, place: Place, scope: Scope) -> NodeSpec | None:
         value = own or self._root.get("tree")

@@ -8,7 +8,7 @@ from explore_bt.mission.document import Entries, Items, Scalar, Value
 from explore_bt.mission.faults import Faults
 from explore_bt.mission.words import did_you_mean, show
 
-__all__ = ["check_keys", "expect_entries", "expect_items", "expect_text", "written"]
+__all__ = ["check_keys", "expect_entries", "expect_items", "expect_text", "is_null", "written"]
 
 
 def written(value: Value) -> str:
@@ -18,7 +18,8 @@ def written(value: Value) -> str:
     return "a list" if isinstance(value, Items) else "a mapping"
 
 
-def _is_null(value: Value | None) -> bool:
+def is_null(value: Value | None) -> bool:
+    """Whether nothing is written there."""
     return value is None or (isinstance(value, Scalar) and value.data is None)
 
 
@@ -26,7 +27,7 @@ def expect_entries(value: Value | None, what: str, example: str, faults: Faults)
     """``value`` as a mapping; None where there is none (nothing written is no fault)."""
     if isinstance(value, Entries):
         return value
-    if value is not None and not _is_null(value):
+    if value is not None and not is_null(value):
         faults.add(value.place, f"{what}: {written(value)} is not a mapping", f"write {example}")
     return None
 
@@ -35,7 +36,7 @@ def expect_items(value: Value | None, what: str, example: str, faults: Faults) -
     """``value`` as a list; empty where there is none (nothing written is no fault)."""
     if isinstance(value, Items):
         return value.values
-    if value is not None and not _is_null(value):
+    if value is not None and not is_null(value):
         faults.add(value.place, f"{what}: {written(value)} is not a list", f"write {example}")
     return ()
 
@@ -44,7 +45,7 @@ def expect_text(value: Value | None, what: str, faults: Faults) -> str | None:
     """``value`` as text; None where there is none (nothing written is no fault)."""
     if isinstance(value, Scalar) and isinstance(value.data, str):
         return value.data
-    if value is not None and not _is_null(value):
+    if value is not None and not is_null(value):
         faults.add(value.place, f"{what}: {written(value)} is not text", "put it in quotes")
     return None
 

@@ -26,17 +26,23 @@ _MOST_NODES = 2000
 class TreeReader:
     """Reads trees of one mission; notes every fault.
 
+    Args:
+        is_whole: False where an included file could not be read: the trees in it are then not missed.
+
     Attributes:
         complete: False once a node had to be left out, so that what it would have written is not known.
     """
 
-    def __init__(self, trees: Mapping[str, Entry], catalog: PluginCatalog, faults: Faults) -> None:
+    def __init__(
+        self, trees: Mapping[str, Entry], is_whole: bool, catalog: PluginCatalog, faults: Faults
+    ) -> None:
         self._trees = trees
+        self._is_whole = is_whole
         self._catalog = catalog
         self._faults = faults
         self._leaves = LeafReader(catalog, faults)
         self._used: set[str] = set()
-        self._control = ControlReader(trees, self._used, self.read, faults)
+        self._control = ControlReader(trees, is_whole, self._used, self.read, faults)
         self._modifiers = ModifierReader(self.read, faults)
         self._count = 0
         self.complete = True
@@ -47,8 +53,9 @@ class TreeReader:
         if not isinstance(value, Scalar) or not isinstance(value.data, str):
             return self.read(value, Spot("", scope))
         if value.data not in self._trees:
-            hint = did_you_mean(value.data, self._trees, "trees")
-            self._faults.add(value.place, f'there is no tree "{value.data}"', hint)
+            if self._is_whole:
+                hint = did_you_mean(value.data, self._trees, "trees")
+                self._faults.add(value.place, f'there is no tree "{value.data}"', hint)
             return None
         entry = self._trees[value.data]
         self._used.add(entry.key)

@@ -8,6 +8,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from explore_bt.errors import UserError
 from explore_bt.files import write_whole
 from explore_bt.interfaces import Exporter, RobotProduct, RunInfo, Sink
 from explore_bt.mission import Mission
@@ -58,7 +59,7 @@ def run_mission(
     try:
         for robot in robots:
             robot.setup()
-        out.mkdir(parents=True, exist_ok=True)
+        _make_folder(out)
         observers.open(_run_info(mission, robots, seed, out))
         runner = Runner(mission, robots, observers, stop)
         try:
@@ -72,6 +73,13 @@ def run_mission(
     finally:
         for robot in robots:
             robot.close()
+
+
+def _make_folder(out: Path) -> None:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{out} cannot be made: {error.strerror}; name another folder with --out") from None
 
 
 def _run_info(mission: Mission, robots: Sequence[Robot], seed: int, out: Path) -> RunInfo:

@@ -31,6 +31,7 @@ class Pilot:
         self.gate_reason = ""
         self._output = ControlOutput(Twist2(), ControlStatus.IDLE)
         self._blocked_since_s: float | None = None
+        self._blocked_by_obstacle = False
         self._now_s = 0.0
 
     @property
@@ -42,6 +43,11 @@ class Pilot:
     def blocked_s(self) -> float:
         """For how long the gate has been braking without a break, seconds."""
         return 0.0 if self._blocked_since_s is None else self._now_s - self._blocked_since_s
+
+    @property
+    def is_blocked_by_obstacle(self) -> bool:
+        """Whether what brakes is the gate's look at the way ahead, not a lost SLAM or a stale scan."""
+        return self._blocked_by_obstacle
 
     @property
     def is_at_rest(self) -> bool:
@@ -77,9 +83,11 @@ class Pilot:
         fault = _unfit_to_drive(estimate, scan, now_s)
         if fault:
             following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
+            self._blocked_by_obstacle = False
         else:
             decision = self._gate.decide(self._output.twist, now.T_map_base, self.motion, dt_s)
             following, self.gate_reason = decision.motion, decision.reason
+            self._blocked_by_obstacle = bool(decision.reason)
         if not self.gate_reason:
             self._blocked_since_s = None
         elif self._blocked_since_s is None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
+from explore_bt.errors import ComponentFailure, NoPath, PlanningFailure, StartBlocked, UserError
 from explore_bt.exploration import warm_up
 from explore_bt.interfaces import Event, MapView, NodeState, RobotContext, RobotSnapshot
 from explore_bt.mission import Mission, RobotSpec, build_tree
@@ -24,6 +25,7 @@ from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D
 __all__ = ["Robot"]
 
 DEFAULT_LIDAR_RANGE_M = 5.0
+SQUEEZE_M = 0.02
 REASON_KEY = "reason"
 """Blackboard entry in which a tree may say why it ended."""
 
@@ -132,17 +134,25 @@ class Robot:
             PlanningFailure: the planner's typed no.
             ComponentFailure: the planner broke down.
         """
-        here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
         try:
-            return self._planner.plan(
-                self.view().grid, here, goal, self.footprint_radius_m, lambda: self._stop.is_raised
-            )
+            try:
+                return self._plan(goal, self.footprint_radius_m)
+            except (NoPath, StartBlocked) as refusal:
+                # the map counts an obstacle as filling its cell; where that closes the only way, the
+                # safety gate, which is finer, decides on the spot
+                with contextlib.suppress(PlanningFailure):
+                    return self._plan(goal, self.footprint_radius_m - SQUEEZE_M)
+                raise refusal
         except (PlanningFailure, UserError):
             raise
         except Exception as error:
             failure = ComponentFailure(f"planner {self._planner.name}", repr(error))
             self.tell("error", failure.component, failure.reason)
             raise failure from error
+
+    def _plan(self, goal: Pose2, radius_m: float) -> Path:
+        here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
+        return self._planner.plan(self.view().grid, here, goal, radius_m, lambda: self._stop.is_raised)
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place that proved too tight for the safety gate."""

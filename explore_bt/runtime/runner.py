@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+
+from py_trees.behaviour import Behaviour
 
 from explore_bt.interfaces import Event, TickSnapshot
 from explore_bt.mission import Mission
@@ -11,7 +13,7 @@ from explore_bt.runtime.observers import Observers
 from explore_bt.runtime.robot import REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.tree import Status
-from explore_bt.types import Outcome
+from explore_bt.types import Outcome, Scan2D
 
 __all__ = ["Runner"]
 
@@ -20,7 +22,7 @@ REST_TIMEOUT_S = 5.0
 
 
 class _Phase(enum.Enum):
-    """Waiting for the first scan, exploring, coming to rest."""
+    """Waiting for the first scan, exploring, coming to rest, at rest."""
 
     WAKING = enum.auto()
     DECIDING = enum.auto()
@@ -41,6 +43,7 @@ class Runner:
         self._dt_s = 1.0 / mission.control_rate_hz
         self._steps_per_tick = round(mission.control_rate_hz / mission.tree_rate_hz)
         self._phase = _Phase.WAKING
+        self._ended: dict[str, Status] = {}
         self._rest_until_s = 0.0
         self._tick = 0
         self.now_s = 0.0
@@ -76,15 +79,16 @@ class Runner:
             self._phase = _Phase.OVER
 
     def _wake(self) -> None:
-        silent = [robot for robot in self._robots if robot.scan() is None]
-        if not silent:
+        blind = [robot for robot in self._robots if _is_blind(robot.scan())]
+        if not blind:
             self._phase = _Phase.DECIDING
         elif self._stop.is_raised:
             self._end(Outcome.STOPPED, self._stop.reason)
         elif self.now_s > FIRST_SCAN_TIMEOUT_S:
-            robot = silent[0]
-            silence = f"driver {robot.driver.name} gave no scan in {FIRST_SCAN_TIMEOUT_S:.0f} s"
-            self._end(Outcome.FAILED, f"robot {robot.name}: {silence}")
+            robot = blind[0]
+            found = "no scan" if robot.scan() is None else "only scans without a valid beam"
+            complaint = f"driver {robot.driver.name} gave {found} in {FIRST_SCAN_TIMEOUT_S:.0f} s"
+            self._end(Outcome.FAILED, f"robot {robot.name}: {complaint}; check the lidar")
 
     def _tick_trees(self) -> None:
         if self._stop.is_raised:
@@ -93,14 +97,22 @@ class Runner:
         if spent := self._budget_spent():
             self._end(Outcome.BUDGET, spent)
             return
-        statuses = [robot.decide() for robot in self._robots]
-        if any(status is Status.RUNNING for status in statuses):
+        for robot in self._robots:
+            if robot.name not in self._ended:  # a tree that is ticked again would begin anew
+                self._tick_tree(robot)
+        if len(self._ended) < len(self._robots):
             return
-        for robot, status in zip(self._robots, statuses, strict=True):
-            if status is not Status.SUCCESS:
+        for robot in self._robots:
+            if self._ended[robot.name] is not Status.SUCCESS:
                 self._end(Outcome.FAILED, _last_words(robot, Status.FAILURE))
                 return
         self._end(Outcome.EXPLORED, _last_words(self._robots[0], Status.SUCCESS))
+
+    def _tick_tree(self, robot: Robot) -> None:
+        status = robot.decide()
+        if status is not Status.RUNNING:
+            self._ended[robot.name] = status
+            robot.pilot.hold()
 
     def _budget_spent(self) -> str:
         limits = self._mission.limits
@@ -128,15 +140,26 @@ class Runner:
         self._tick += 1
 
 
+def _is_blind(scan: Scan2D | None) -> bool:
+    """No scan, or one in which no beam tells anything."""
+    return scan is None or bool(scan.is_invalid.all())
+
+
 def _last_words(robot: Robot, status: Status) -> str:
-    """What the tree wrote as its reason, else the last leaf that ended like it and said something."""
-    if REASON_KEY in robot.blackboard:
-        return str(robot.blackboard[REASON_KEY])
-    spoken = [
-        node
-        for node in robot.tree.nodes
-        if not node.children and node.status is status and node.feedback_message
-    ]
-    if not spoken:
-        return f"the tree of robot {robot.name} ended with {status.value}"
-    return f"{spoken[-1].name}: {spoken[-1].feedback_message}"
+    """What the tree wrote as its reason; where it failed, also what the leaves said that made it fail."""
+    words = [str(robot.blackboard[REASON_KEY])] if REASON_KEY in robot.blackboard else []
+    if status is Status.FAILURE or not words:
+        ended = [leaf for leaf in _leaves_that_ended(robot.tree.root, status) if leaf.feedback_message]
+        spoken = ended if status is Status.FAILURE else ended[-1:]
+        words += [f"{leaf.name}: {leaf.feedback_message}" for leaf in spoken]
+    return "; ".join(dict.fromkeys(words)) or f"the tree of robot {robot.name} ended with {status.value}"
+
+
+def _leaves_that_ended(node: Behaviour, status: Status) -> Iterator[Behaviour]:
+    """Leaves with this status below nodes with this status: a failure that was recovered from is left out."""
+    if node.status is not status:
+        return
+    if not node.children:
+        yield node
+    for child in node.children:
+        yield from _leaves_that_ended(child, status)

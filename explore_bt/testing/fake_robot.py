@@ -19,6 +19,7 @@ class FakePilot:
         self.holds = 0
         self.output = ControlOutput(Twist2(), ControlStatus.IDLE)
         self.blocked_s = 0.0
+        self.is_blocked_by_obstacle = True
 
     def follow(self, path: Path) -> None:
         """Remember the path; the status becomes ``running``."""

@@ -20,17 +20,6 @@ class MotionLimits:
     turn_acceleration_rps2: float = 2.0
     turn_jerk_rps3: float = 8.0
 
-    def capped_by(self, other: MotionLimits) -> MotionLimits:
-        """The stricter of the two, limit by limit."""
-        return MotionLimits(
-            min(self.speed_mps, other.speed_mps),
-            min(self.acceleration_mps2, other.acceleration_mps2),
-            min(self.jerk_mps3, other.jerk_mps3),
-            min(self.turn_rate_rps, other.turn_rate_rps),
-            min(self.turn_acceleration_rps2, other.turn_acceleration_rps2),
-            min(self.turn_jerk_rps3, other.turn_jerk_rps3),
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class MotionState:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -71,3 +72,17 @@ def test_a_file_in_place_of_the_folder_is_refused(tmp_path):
     path = tmp_path / "out"
     path.write_text("mine")
     assert refusal(new_run_folder, path, "m") == f"{path} is a file; name a new folder with --out"
+
+
+def test_a_file_above_the_folder_is_refused_before_anything_is_made_ready(tmp_path):
+    path = tmp_path / "out"
+    path.write_text("mine")
+    assert refusal(new_run_folder, path / "a" / "b", "m") == (
+        f"{path / 'a' / 'b'} cannot be made: {path} is a file; name another folder with --out"
+    )
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_that_may_not_be_written_is_refused(tmp_path):
+    tmp_path.chmod(0o500)
+    assert "you may not write into" in refusal(new_run_folder, tmp_path / "run", "m")

@@ -238,6 +238,14 @@ def test_schema_is_json_and_knows_the_installed_plugins(folder):
     assert (folder / "schema.json").read_text() == shown.stdout
 
 
+def test_schema_in_place_of_a_folder_is_told_with_2(folder):
+    shown = CliRunner().invoke(app, ["schema", "--out", "."])
+    assert (shown.exit_code, shown.stderr) == (
+        2,
+        ". is a folder; name a file in it, for example schema.json\n",
+    )
+
+
 def test_schema_into_a_folder_that_is_not_there_is_told_with_2(folder):
     shown = CliRunner().invoke(app, ["schema", "--out", "a/schema.json"])
     assert (shown.exit_code, shown.stderr) == (

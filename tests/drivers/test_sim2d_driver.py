@@ -245,7 +245,7 @@ def test_a_robot_too_wide_for_the_world_is_told_so() -> None:
     ("options", "message"),
     [
         ({"world": "nowhere.yaml"}, "nowhere.yaml: there is no such file"),
-        ({"world": str(WORLDS)}, "cannot be read as text"),
+        ({"world": str(WORLDS)}, r"cannot be read \(is a directory\); give the path of"),
     ],
 )
 def test_a_world_that_is_not_there_is_refused_at_setup(options: dict[str, object], message: str) -> None:

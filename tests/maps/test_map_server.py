@@ -137,7 +137,17 @@ def test_missing_empty_and_strange_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "list.yaml").write_text("- 1\n")
     assert "holds a list" in refusal(tmp_path / "list.yaml")
     (tmp_path / "binary.yaml").write_bytes(b"\xff\xfe\x00\x80")
-    assert "cannot be read as text" in refusal(tmp_path / "binary.yaml")
+    assert "is no text (byte 0 is not UTF-8); give the YAML file of" in refusal(tmp_path / "binary.yaml")
+    assert "cannot be read (is a directory)" in refusal(tmp_path)
     header = save(tmp_path)
     (tmp_path / "map.png").write_bytes(b"")
     assert "map.png: is not a picture that can be read (0 bytes)" in refusal(header)
+
+
+def test_a_broken_picture_is_refused_once_and_in_our_words_only(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    header = save(tmp_path)
+    (tmp_path / "map.png").write_bytes(b"P5\n100 80\n255\n\xfe")
+    assert "is not a picture that can be read (15 bytes)" in refusal(header)
+    assert capfd.readouterr() == ("", "")

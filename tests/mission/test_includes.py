@@ -127,3 +127,13 @@ def test_a_file_included_twice_is_read_once(folder, catalog) -> None:
 def test_what_is_no_file_is_refused(folder, catalog, include) -> None:
     with pytest.raises(MissionError):
         load_with(folder, catalog, "", include)
+
+
+def test_what_an_unread_file_would_have_held_is_not_missed_too(folder, catalog) -> None:
+    text = (folder / "m.yaml").read_text().replace("tree: explore\n", "tree: spare\n")
+    (folder / "m.yaml").write_text(text)
+    with pytest.raises(MissionError) as caught:
+        load_with(folder, catalog, include="trees/gone.yaml")
+    assert [fault.message for fault in caught.value.faults] == [
+        "trees/gone.yaml cannot be read: no such file or directory"
+    ]

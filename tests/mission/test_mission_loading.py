@@ -150,7 +150,7 @@ def test_a_missing_mission_file_is_one_plain_line(catalog, tmp_path) -> None:
     with pytest.raises(MissionError) as caught:
         load_mission(path, catalog)
     assert str(caught.value) == (
-        f"{path}  {path} cannot be read: no such file or directory\n1 fault, nothing was run"
+        f"{path}  the mission cannot be read: no such file or directory\n1 fault, nothing was run"
     )
 
 

@@ -20,9 +20,9 @@ from explore_bt.mission import load_mission
 from explore_bt.plugin import Registry, load_plugins
 from explore_bt.runtime import StopFlag, run_mission
 from explore_bt.tree import Leaf
-from explore_bt.types import Health, Measurement, Result, Scan2D
+from explore_bt.types import Health, Measurement, Outcome, Result, Scan2D
 
-from .conftest import MISSIONS
+from .conftest import MISSIONS, RunMission
 
 
 class Watcher(Sink):
@@ -153,7 +153,46 @@ def test_a_driver_that_never_scans_is_named(tmp_path: Path) -> None:
     base: type[Driver] = built_in("driver", "sim2d")
     deaf = type("Broken", (base,), {"name": "broken", "read": lambda self: ()})
     result, _ = run_with(deaf, tmp_path, "sim2d")
-    assert result.reason == "robot robot: driver broken gave no scan in 5 s"
+    assert result.reason == "robot robot: driver broken gave no scan in 5 s; check the lidar"
+
+
+def test_a_lidar_of_which_every_beam_is_invalid_is_named(run: RunMission, tmp_path: Path) -> None:
+    text = (MISSIONS / "00_room.yaml").read_text()
+    text = text.replace("worlds/room.yaml", f"{MISSIONS}/worlds/room.yaml, dropout: 1.0")
+    (tmp_path / "trees").mkdir()
+    (tmp_path / "trees/complete.yaml").write_text((MISSIONS / "trees/complete.yaml").read_text())
+    (tmp_path / "mission.yaml").write_text(text)
+    result = run(tmp_path / "mission.yaml", "slam=ground_truth")
+    assert (result.outcome, result.reason) == (
+        Outcome.FAILED,
+        "robot robot: driver sim2d gave only scans without a valid beam in 5 s; check the lidar",
+    )
+
+
+def test_a_failed_way_home_is_named_beside_the_reason_to_go_there(tmp_path: Path) -> None:
+    base: type[Planner] = built_in("planner", "skeleton")
+    broken = type("Broken", (base,), {"name": "broken", "plan": after(1, base.plan)})
+    result, _ = run_with(broken, tmp_path, "skeleton")
+    assert result.outcome is Outcome.FAILED
+    explored, home = result.reason.split("; ")
+    assert explored.startswith("no reachable frontier")
+    assert home == "drive_to: no path: planner broken: RuntimeError('cable pulled')"
+
+
+def test_a_robot_that_is_done_waits_for_the_others(tmp_path: Path, registry: Registry) -> None:
+    robot = (
+        "{driver: {use: sim2d, world: %s}, slam: ground_truth, planner: skeleton, controller: pursuit, %s}"
+    )
+    world = f"{MISSIONS}/worlds/room.yaml"
+    (tmp_path / "mission.yaml").write_text(
+        "format: explore-bt/1\nrobots:\n"
+        f"  quick: {robot % (world, 'tree: {wait: {duration: 1 s}}')}\n"
+        f"  slow: {robot % (world, 'tree: {wait: {duration: 2.5 s}}')}\n"
+    )
+    mission = load_mission(tmp_path / "mission.yaml", registry)
+    result = run_mission(mission, registry=registry, out=tmp_path / "run", seed=0, sinks=[], stop=StopFlag())
+    assert result.outcome is Outcome.EXPLORED
+    assert 2.5 < result.mission_time_s < 3.5
 
 
 def test_a_sink_that_raises_does_not_end_the_mission(tmp_path: Path, registry: Registry) -> None:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from explore_bt.interfaces import ControlStatus
 from explore_bt.types import MotionLimits, MotionState, Path, Pose2
@@ -28,6 +29,7 @@ _BEHIND_M, _AHEAD_M, _WIDE_M = 0.2, 0.4, 1.5  # where along the path the robot i
 _LOST_M = 0.15  # from this distance on it is looked for more widely
 _HEADING_WEIGHT_M = 0.1
 _APPROACHES = 3
+_SLOWEST_SHARE = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +54,10 @@ class Wish:
 class Follower:
     """Drives one path: turn towards a leg where it must, drive it, turn to the final heading."""
 
-    def __init__(self, path: Path, options: PursuitOptions) -> None:
+    def __init__(self, path: Path, options: PursuitOptions, footprint_radius_m: float) -> None:
         self._options = options
+        self._path = path
+        self._footprint_m = footprint_radius_m
         self._goal = path.goal
         self._legs = legs_of(path.poses, options.turn_from)
         if sum(leg.length_m for leg in self._legs) < options.position_tolerance / 2.0:
@@ -139,7 +143,10 @@ class Follower:
     ) -> float:
         if self._speeds is None or self._speeds[0] is not limits or self._speeds[1] != self._index:
             self._speeds = (limits, self._index)
-            self._limits_ahead = leg.speed_limits(limits, self._options.lateral_acceleration)
+            self._limits_ahead = np.minimum(
+                leg.speed_limits(limits, self._options.lateral_acceleration),
+                limits.speed_mps * self._ease(leg),
+            )
         k = min(int(self._along / leg.spacing_m), len(leg.points) - 1)
         one_metre_turn = turn_rate(
             1.0, lateral, error, leg.curvature[k], leg.curvature_rate[k], self._options.convergence
@@ -163,6 +170,13 @@ class Follower:
                 limits.jerk_mps3,
             )
         )
+
+    def _ease(self, leg: Leg) -> NDArray[np.float64]:
+        """(N,) share of full speed along a leg: less where little room is left beside the footprint."""
+        offsets = leg.points[:, None, :] - self._path.poses[None, :, :2]
+        nearest = np.argmin(np.einsum("ijk,ijk->ij", offsets, offsets), axis=1)
+        room_m = self._path.clearance_m[nearest] - self._footprint_m
+        return np.clip(room_m / max(self._options.slow_below, 1e-6), _SLOWEST_SHARE, 1.0)
 
     def _steer(self, leg: Leg, pose: Pose2, linear: float, motion: MotionState, dt_s: float) -> Wish:
         """Turn rate for where the robot will be when it is reached."""

@@ -27,6 +27,9 @@ class PursuitOptions(PluginOptions):
     convergence: Length = Field(
         0.3, gt=0.05, description="arc length over which an offset from the path is taken back"
     )
+    slow_below: Length = Field(
+        0.1, ge=0.0, description="room beside the footprint under which speed falls in proportion, to a fifth"
+    )
     lateral_acceleration: Acceleration = Field(0.5, gt=0.0, description="greatest centripetal acceleration")
     off_path: Length = Field(0.5, gt=0.0, description="distance from the path at which it is given up")
     stuck_after: Duration = Field(5.0, gt=0.0, description="time without progress after which it is given up")

@@ -38,6 +38,7 @@ class Pursuit(Controller):
         super().__init__(options)
         self._options = options
         self._limits = MotionLimits()
+        self._footprint_m = 0.0
         self._follower: Follower | None = None
         self._given_up = ""
 
@@ -49,6 +50,7 @@ class Pursuit(Controller):
         for yaw in (0.0, 2.0):
             self.step(Estimate(0.0, Pose2(0.0, 0.0, yaw)), None, MotionState(), 0.05)
         self.hold()
+        self._footprint_m = context.footprint_radius_m
         self.limit(context.limits)
 
     def limit(self, limits: MotionLimits) -> None:
@@ -57,7 +59,7 @@ class Pursuit(Controller):
 
     def follow(self, path: Path) -> None:
         """See ``Controller.follow``."""
-        self._follower, self._given_up = Follower(path, self._options), ""
+        self._follower, self._given_up = Follower(path, self._options, self._footprint_m), ""
 
     def hold(self) -> None:
         """See ``Controller.hold``."""
