@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from explore_bt.errors import ComponentFailure, PlanningFailure
-from explore_bt.exploration import visible_unknown_area
-from explore_bt.exploration.clearance import clearance_at
+from explore_bt.exploration import clearance_at, visible_unknown_area
 from explore_bt.interfaces import ControlStatus
 from explore_bt.tree import Input, Key, Leaf, Output, Status
 from explore_bt.types import Path, Pose2, Waypoint
@@ -89,7 +88,7 @@ class DriveTo(Leaf):
         self._held += 1
         if self._held > self.replans:
             self.failure = "held"
-            self.say(f"gave up after {self._held} holds: {reason or 'the safety gate braked'}")
+            self.say(f"gave up after {self._held} holds: {reason or self.robot.pilot.gate_reason}")
             return Status.FAILURE
         if self._held > 1 and self.robot.pilot.is_blocked_by_obstacle:
             self.robot.avoid(self._place_ahead())

@@ -45,6 +45,10 @@ class Pilot(Protocol):
         """For how long the robot has been braked for without a break, seconds; 0 while commands pass."""
 
     @property
+    def gate_reason(self) -> str:
+        """Why the robot is being braked for; empty while commands pass."""
+
+    @property
     def is_blocked_by_obstacle(self) -> bool:
         """Whether what brakes is the gate's look at the way ahead, not a lost SLAM or a stale scan."""
 

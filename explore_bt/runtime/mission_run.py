@@ -98,21 +98,24 @@ def _run_info(mission: Mission, robots: Sequence[Robot], seed: int, out: Path) -
 def _result(
     mission: Mission, robots: Sequence[Robot], runner: Runner, seed: int, wall_time_s: float
 ) -> Result:
-    """Figures of the first robot; a fleet's are joined where fleets are."""
+    """Contacts and closest place of all robots; the other figures are the first one's."""
     robot = robots[0]
-    score = robot.scores.score()
+    scores = [each.scores.score() for each in robots]
+    contacts = [each.contacts for each in scores if each.contacts is not None]
+    closest_m = [each.min_clearance_m for each in scores if each.min_clearance_m is not None]
+    score = scores[0]
     left_open = robot.blackboard.get(LEFT_OPEN_KEY, ())
     return Result(
         outcome=runner.outcome,
         reason=runner.reason,
         mission=mission.name,
         coverage=score.coverage,
-        contacts=score.contacts,
+        contacts=sum(contacts) if contacts else None,
         ate_rmse_m=robot.scores.ate_rmse_m(robot.slam.trajectory()),
         path_length_m=score.distance_m,
         mission_time_s=runner.now_s,
         wall_time_s=wall_time_s,
-        min_clearance_m=score.min_clearance_m,
+        min_clearance_m=min(closest_m, default=None),
         mean_clearance_m=score.mean_clearance_m,
         distance_to_home_m=score.distance_to_home_m,
         seed=seed,

@@ -111,6 +111,8 @@ def _unfit_to_drive(estimate: Estimate, scan: Scan2D | None, now_s: float) -> st
         return f"SLAM is lost: {estimate.reason}"
     if scan is None:
         return "no scan yet"
+    if bool(scan.is_invalid.all()):
+        return "no beam of the newest scan is valid"
     if (age_s := now_s - scan.stamp_s) > STALE_SCAN_S:
         return f"the newest scan is {age_s:.1f} s old"
     return ""

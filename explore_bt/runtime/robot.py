@@ -25,7 +25,8 @@ from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D
 __all__ = ["Robot"]
 
 DEFAULT_LIDAR_RANGE_M = 5.0
-SQUEEZE_M = 0.02
+SQUEEZES_M = (0.02, 0.05)
+"""How much too narrow a passage may be drawn and still be tried, when no other way is left."""
 REASON_KEY = "reason"
 """Blackboard entry in which a tree may say why it ended."""
 
@@ -138,10 +139,11 @@ class Robot:
             try:
                 return self._plan(goal, self.footprint_radius_m)
             except (NoPath, StartBlocked) as refusal:
-                # the map counts an obstacle as filling its cell; where that closes the only way, the
-                # safety gate, which is finer, decides on the spot
-                with contextlib.suppress(PlanningFailure):
-                    return self._plan(goal, self.footprint_radius_m - SQUEEZE_M)
+                # the map counts an obstacle as filling its cell, and draws walls a cell too thick at times;
+                # where that closes the only way, the safety gate, which is finer, decides on the spot
+                for squeeze_m in SQUEEZES_M:
+                    with contextlib.suppress(PlanningFailure):
+                        return self._plan(goal, self.footprint_radius_m - squeeze_m)
                 raise refusal
         except (PlanningFailure, UserError):
             raise

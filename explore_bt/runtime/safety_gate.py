@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from explore_bt.exploration.clearance import clearance_field
+from explore_bt.exploration import clearance_field
 from explore_bt.runtime.brake import brake_duration_s, brake_velocity
 from explore_bt.types import FREE, OCCUPIED, MotionLimits, MotionState, OccupancyGrid, Pose2, Twist2
 
@@ -27,8 +27,8 @@ SCANS_KEPT = 5
 VOTED_MARGIN_M = 0.01
 """Beyond the footprint by that vote, which errs by millimetres where the lidar errs by centimetres."""
 NEWEST_MARGIN_M = -0.005
-"""Beyond the footprint by the newest scan alone, at a crawl: it speaks for what has just appeared and the vote
-cannot know yet; its own noise may not stop the robot in every door."""
+"""Beyond the footprint by the newest scan alone, at a crawl: it speaks for what has just appeared and the
+vote cannot know yet; its own noise may not stop the robot in every door."""
 HASTE_MARGIN_M = 0.02
 """More for both from ``FAST_MPS`` on, where less time is left to find out."""
 FAST_MPS = 0.3
@@ -45,7 +45,7 @@ _NEIGHBOURS = np.ones((3, 3), dtype=np.uint8)
 
 @dataclass(frozen=True, slots=True)
 class GateDecision:
-    """The twist to send, and why it is not the one that was asked for (empty if it is)."""
+    """The motion to send, and why it is not the one that was asked for (empty if it is)."""
 
     motion: MotionState
     reason: str

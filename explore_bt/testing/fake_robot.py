@@ -20,6 +20,7 @@ class FakePilot:
         self.output = ControlOutput(Twist2(), ControlStatus.IDLE)
         self.blocked_s = 0.0
         self.is_blocked_by_obstacle = True
+        self.gate_reason = ""
 
     def follow(self, path: Path) -> None:
         """Remember the path; the status becomes ``running``."""

@@ -2,8 +2,11 @@ from __future__ import annotations
 
 import gtsam
 import numpy as np
+import pytest
+from explore_bt_slam.back_end import BackEnd
 from explore_bt_slam.graph_distance import relative_covariances
 from explore_bt_slam.pose_graph import Edge, PoseGraph
+from explore_bt_slam.sweep import Sweep
 
 from explore_bt.types import Pose2
 
@@ -83,3 +86,18 @@ def test_a_restored_graph_has_the_same_poses_and_goes_on() -> None:
     again.extend(Edge(24, 25, Pose2(0.5, 0.0, 0.0), SPREAD, False))
     assert again.poses.shape == (26, 3)
     assert np.allclose(again.covariance(24), graph.covariance(24), rtol=1e-3)
+
+
+def test_steps_that_know_nothing_do_not_make_the_graph_singular() -> None:
+    sweep = Sweep(0.0, np.zeros((1, 2), np.float32), np.ones((1, 2), np.float32), np.zeros(1, np.bool_))
+    end = BackEnd(5.0, loop_closures=False)
+    newest = end.begin(sweep, Pose2.identity())
+    for scale in (1e-12, 1e6, 1e18, np.nan):
+        for _ in range(40):
+            newest = end.extend(
+                sweep,
+                newest,
+                Pose2(0.5, 0.0, 0.0),
+                np.full((3, 3), scale) if np.isnan(scale) else np.eye(3) * scale,
+            )
+    assert end.poses[-1, 0] == pytest.approx(80.0, abs=1e-3)

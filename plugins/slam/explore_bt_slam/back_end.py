@@ -20,6 +20,9 @@ __all__ = ["BackEnd"]
 
 _TRUSTED_SIGMA_M = 0.05
 _EDGE_FLOOR = np.diag([0.002, 0.002, 0.0005]) ** 2
+_EDGE_MOST = 1.0
+"""Largest variance of a step between keyframes, m² and rad²: in a hall without walls in range the filter's
+own grows without bound, and the graph's equations would become singular in doubles."""
 
 
 class BackEnd:
@@ -82,7 +85,7 @@ class BackEnd:
             covariance: (3, 3) float64 of ``relative``, axes of the new keyframe.
         """
         newest = len(self._keyframes)
-        self._graph.extend(Edge(since, newest, relative, covariance + _EDGE_FLOOR, is_closure=False))
+        self._graph.extend(Edge(since, newest, relative, _bounded(covariance), is_closure=False))
         driven_m = self._keyframes[-1].driven_m + float(np.hypot(relative.x, relative.y))
         self._keep(sweep, driven_m)
         self._measure(newest)
@@ -121,3 +124,11 @@ class BackEnd:
         points = sweep.points
         self._keyframes.append(Keyframe(sweep.stamp_s, points, normals_of(points), driven_m))
         return len(self._keyframes) - 1
+
+
+def _bounded(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3) float64: the covariance with its floor, no direction less certain than the graph can take."""
+    if not np.isfinite(covariance).all():
+        return np.eye(3) * _EDGE_MOST
+    variances, directions = np.linalg.eigh(covariance + _EDGE_FLOOR)
+    return np.asarray((directions * np.clip(variances, _EDGE_FLOOR.min(), _EDGE_MOST)) @ directions.T)
