@@ -39,6 +39,9 @@ class DriveTo(Leaf):
     )
     replans: Input[int] = Input(int, default=3, ge=0, doc="new plans after being held, before giving up")
     failure: Output[str] = Output(str, default=Key("failure"), doc="code of the reason for a failure")
+    reached: Output[Waypoint] = Output(
+        Waypoint, default=Key("reached"), doc="the goal; where it was seen from, if the drive stopped early"
+    )
 
     def initialise(self) -> None:
         """A new drive begins."""
@@ -52,9 +55,11 @@ class DriveTo(Leaf):
         if self._path is None:
             return self._plan()
         if self._is_seen():
+            self.reached = Waypoint(self.robot.estimate().T_map_base, "seen from here")
             return Status.SUCCESS
         output = self.robot.pilot.output
         if output.status is ControlStatus.ARRIVED:
+            self.reached = self.goal
             self.say("arrived")
             return Status.SUCCESS
         if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:

@@ -83,6 +83,7 @@ def test_a_goal_that_shows_nothing_new_any_more_is_not_driven_to_the_end() -> No
     leaf.tick_once()
     assert leaf.status is Status.SUCCESS
     assert "seen from afar" in leaf.feedback_message
+    assert leaf.blackboard["reached"].pose == robot.pose
 
 
 def test_a_drive_that_is_cut_off_holds_the_robot() -> None:
