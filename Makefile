@@ -1,7 +1,7 @@
 # Needs python3 (3.11 or newer), pip and make; everything else goes into .venv.
 PYTHON ?= python3
 BIN := .venv/bin
-PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+PIP := $(BIN)/python -m pip --disable-pip-version-check -qq
 
 .PHONY: demo test lint types docs bench clean
 
@@ -29,7 +29,7 @@ clean:                     ## forget the environment and what was built
 # Debian's python3 comes without ensurepip: pip then installs itself from outside.
 .venv/bin/python:
 	@$(PYTHON) -m venv .venv 2>/dev/null || { rm -rf .venv; $(PYTHON) -m venv --without-pip .venv \
-	  && $(PYTHON) -m pip --python .venv/bin/python install --quiet pip; }
+	  && $(PYTHON) -m pip --python .venv/bin/python install -qq pip; }
 
 .venv/run.done: pyproject.toml | .venv/bin/python
 	@echo "installing explore-bt and its libraries into .venv: about a minute"

@@ -92,9 +92,9 @@ class FindNextHeading(Leaf):
             width = f"{math.degrees(sector.width_rad):.0f}°"
             for stride in self._strides():
                 waypoint = next_waypoint(pose, sector, stride)
-                refusal = self._refusal(waypoint.pose)
+                refusal, gain_m2 = self._judge(waypoint.pose)
                 if not refusal:
-                    return self._take(waypoint, width, refusals, len(sectors))
+                    return self._take(waypoint, gain_m2, width, refusals, len(sectors))
             refusals.append(f"{width} refused ({refusal})")
         self.say("; ".join([_count(len(sectors)), *refusals]))
         return Status.FAILURE
@@ -114,8 +114,17 @@ class FindNextHeading(Leaf):
         count = 1 if shortest == self.stride else _STRIDES
         return [float(stride) for stride in np.linspace(self.stride, shortest, count)]
 
+    def _judge(self, pose: Pose2) -> tuple[str, float]:
+        """Why a waypoint does not qualify (empty if it does), and the new area to be seen from it, m²."""
+        refusal = self._refusal(pose)
+        if refusal:
+            return refusal, 0.0
+        grid = self.robot.view().grid
+        gain_m2 = visible_unknown_area(grid, pose.xy, self.robot.lidar_range_m, depth_m=_DEPTH_M)
+        return (f"shows only {gain_m2:.2f} m² of new area" if gain_m2 < self.min_gain else ""), gain_m2
+
     def _refusal(self, pose: Pose2) -> str:
-        """Why a waypoint does not qualify; empty if it does. The cheap rules come first."""
+        """Which of the rules about place and direction a waypoint breaks; empty if none."""
         window = None if self.half_planes == "all" else int(self.half_planes)
         if not self.history.contains(pose.xy, window):
             return "outside the half-planes"
@@ -130,20 +139,19 @@ class FindNextHeading(Leaf):
         clearance_m = float(clearance_at(grid, np.array([pose.xy]), needed_m)[0])
         if clearance_m < needed_m:
             return f"only {clearance_m:.2f} m clear at the waypoint, needs {needed_m:.2f} m"
-        self._gain_m2 = visible_unknown_area(grid, pose.xy, self.robot.lidar_range_m, depth_m=_DEPTH_M)
-        if self._gain_m2 < self.min_gain:
-            return f"shows only {self._gain_m2:.2f} m² of new area"
         return ""
 
-    def _take(self, waypoint: Waypoint, width: str, refusals: list[str], count: int) -> Status:
+    def _take(
+        self, waypoint: Waypoint, gain_m2: float, width: str, refusals: list[str], count: int
+    ) -> Status:
         x, y = waypoint.position
         words = [
             _count(count),
             *refusals,
-            f"took {width} → ({x:.1f}, {y:.1f}), {self._gain_m2:.1f} m² to see",
+            f"took {width} → ({x:.1f}, {y:.1f}), {gain_m2:.1f} m² to see",
         ]
         self.say("; ".join(words))
-        self.goal = Waypoint(waypoint.pose, "safe heading", self._gain_m2)
+        self.goal = Waypoint(waypoint.pose, "safe heading", gain_m2)
         return Status.SUCCESS
 
 

@@ -9,9 +9,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from explore_bt.errors import ComponentFailure, NoPath, PlanningFailure, StartBlocked, UserError
+from explore_bt.errors import (
+    ComponentFailure,
+    NoPath,
+    PlanningFailure,
+    StartBlocked,
+    UserError,
+)
 from explore_bt.exploration import warm_up
-from explore_bt.interfaces import Event, MapView, NodeState, RobotContext, RobotSnapshot
+from explore_bt.interfaces import (
+    Event,
+    MapView,
+    NodeState,
+    RobotContext,
+    RobotSnapshot,
+)
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
@@ -76,8 +88,8 @@ class Robot:
             truth=self.driver.truth(),
         )
         self.home = self.driver.start
-        self.slam.setup(context)
         warm_up()
+        self.slam.setup(context)
         self._planner.setup(context)
         self._controller.setup(context)
         gate = SafetyGate(self.driver.footprint_radius_m, limits)
@@ -172,7 +184,7 @@ class Robot:
 
     def sense(self) -> None:
         """Take in what the driver measured since the last time."""
-        measurements = self._guarded("driver", self.driver.read, ())
+        measurements = self._read()
         for measurement in measurements:
             self._take(measurement)
         if any(isinstance(measurement, Scan2D) for measurement in measurements):
@@ -255,14 +267,12 @@ class Robot:
         points = estimate.T_map_base.apply(steadied(self._scan).points())
         self.pilot.see(np.ascontiguousarray(points), self.slam.grid(), estimate)
 
-    def _guarded(
-        self, kind: str, call: Callable[[], Sequence[Measurement]], fallback: Sequence[Measurement]
-    ) -> Sequence[Measurement]:
+    def _read(self) -> Sequence[Measurement]:
         try:
-            return call()
+            return self.driver.read()
         except Exception as error:  # silence is handled: a stale scan brakes the robot
-            self.tell("error", f"{kind} {self.driver.name}", repr(error))
-            return fallback
+            self.tell("error", f"driver {self.driver.name}", repr(error))
+            return ()
 
     def _watch_health(self) -> None:
         estimate = self.estimate()
@@ -272,7 +282,7 @@ class Robot:
             self._health = estimate.health
 
     def _watch_gate(self) -> None:
-        if self.pilot.gate_reason and not self._gate_reason:
+        if self.pilot.gate_reason and not self._gate_reason and self._scan is not None:
             self.tell("warning", "safety gate", self.pilot.gate_reason)
         self._gate_reason = self.pilot.gate_reason
 

@@ -171,9 +171,9 @@ def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str,
     if worst >= needed_m:
         return ""
     if here < INSIDE_SHARE * needed_m:
-        return f"the robot seems to stand {here:.2f} m from an {obstacle}, needs {needed_m:.2f} m"
+        return f"the robot seems to stand {here:.3f} m from an {obstacle}, needs {needed_m:.3f} m"
     if worst < min(needed_m, here) or (here < needed_m and clearance_m[-1] < here + gain_m):
-        return f"the stop would end {worst:.2f} m from an {obstacle}, needs {needed_m:.2f} m"
+        return f"the stop would end {worst:.3f} m from an {obstacle}, needs {needed_m:.3f} m"
     return ""
 
 

@@ -95,7 +95,7 @@ def test_driving_at_a_wall_ends_at_rest_with_the_reason_in_words() -> None:
     assert abs(motion.twist.linear_mps) < 1e-3
     assert pose.x < 4.0 - RADIUS
     assert pose.x > 4.0 - RADIUS - 0.15
-    assert "in the map, needs 0.25 m" in reason
+    assert "in the map, needs 0.250 m" in reason
 
 
 def test_an_obstacle_only_the_scan_knows_is_enough_to_brake() -> None:

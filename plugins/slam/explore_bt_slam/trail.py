@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,8 +51,3 @@ class Trail:
         """The part from ``start_s`` on (with the sample before it), in the same frame."""
         first = max(int(np.searchsorted(self.times_s, start_s, side="right")) - 1, 0)
         return Trail(self.times_s[first:], self.poses[first:])
-
-    @property
-    def is_finite(self) -> bool:
-        """Whether all its numbers are."""
-        return bool(np.isfinite(self.poses).all()) and math.isfinite(float(self.times_s[-1]))
