@@ -38,7 +38,7 @@ def row(name: str, result: dict[str, Any]) -> str:
     if "coverage" not in result:
         return f"| {name} | {result['outcome']} |" + " |" * 8
     return (
-        f"| {name} | {result['outcome']} | {_percent(result['coverage'])} | {result['contacts']} "
+        f"| {name} | {result['outcome']} | {_percent(result['coverage'])} | {result['contacts']:.0f} "
         f"| {_centimetres(result['ate_rmse_m'])} | {result['path_length_m']:.1f} m "
         f"| {result['min_clearance_m']:.2f} m | {_clock(result['mission_time_s'])} "
         f"| {result['wall_time_s']:.0f} s | {_centimetres(result['distance_to_home_m'])} |"
