@@ -5,21 +5,18 @@ python benchmarks/sim2d.py [WORLD.yaml ...]
 
 from __future__ import annotations
 
-import os
-import platform
 import statistics
-import subprocess
 import sys
 import time
 from pathlib import Path
 
 from explore_bt_drivers import Sim2d, Sim2dOptions
+from machine import ROOT, describe_machine
 
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Twist2
 
-_ROOT = Path(__file__).resolve().parent.parent
-_WORLDS = _ROOT / "missions" / "worlds"
+_WORLDS = ROOT / "missions" / "worlds"
 _CONTROL_HZ = 20
 _SIMULATED_S = 60
 _REPEATS = 5
@@ -47,23 +44,16 @@ def simulated_over_cpu(world: Path, beams: int) -> float:
 def main() -> None:
     """Print one table."""
     worlds = [Path(name) for name in sys.argv[1:]] or [_WORLDS / "room.yaml", _WORLDS / "apartment.yaml"]
-    out = sys.stdout.write
-    out("sim2d without SLAM: times real time by process CPU, ")
-    out(f"median of {_REPEATS} drives of {_SIMULATED_S} s\n{platform.machine()}, {os.cpu_count()} cores, ")
-    out(f"Python {platform.python_version()}, commit {_commit()}\n\n")
-    out(f"{'world':<24}{'360 beams':>12}{'720 beams':>12}\n")
+    print(
+        f"sim2d without SLAM: times real time by process CPU, median of {_REPEATS} drives of {_SIMULATED_S} s"
+    )
+    print(f"{describe_machine()}\n\n| world | 360 beams | 720 beams |\n|---|---|---|")
     for world in worlds:
         figures = [
             statistics.median(simulated_over_cpu(world, beams) for _ in range(_REPEATS))
             for beams in (360, 720)
         ]
-        out(f"{world.stem:<24}{figures[0]:>11.0f}×{figures[1]:>11.0f}×\n")
-
-
-def _commit() -> str:
-    words = ["git", "-C", str(_ROOT), "describe", "--always", "--dirty"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
-    return done.stdout.strip() or "unknown"
+        print(f"| {world.stem} | {figures[0]:.0f} × | {figures[1]:.0f} × |", flush=True)
 
 
 if __name__ == "__main__":
