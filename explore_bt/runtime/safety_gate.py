@@ -24,7 +24,7 @@ __all__ = ["GateDecision", "SafetyGate"]
 
 SCANS_KEPT = 5
 """Scans that vote on a clearance: their median leaves the noise of one scan no luck to creep by."""
-VOTED_MARGIN_M = 0.01
+VOTED_MARGIN_M = 0.013
 """Beyond the footprint by that vote, which errs by millimetres where the lidar errs by centimetres."""
 NEWEST_MARGIN_M = -0.005
 """Beyond the footprint by the newest scan alone, at a crawl: it speaks for what has just appeared and the
