@@ -1,5 +1,6 @@
 """The leaves that put the exploration's mathematics into a tree, one a file."""
 
+from explore_bt.behaviours.back_out import BackOut
 from explore_bt.behaviours.choose_home import ChooseHome
 from explore_bt.behaviours.drive_to import DriveTo
 from explore_bt.behaviours.find_next_heading import FindNextHeading
@@ -16,6 +17,7 @@ from explore_bt.behaviours.watch_progress import WatchProgress
 
 __all__ = [
     "LEAVES",
+    "BackOut",
     "ChooseHome",
     "DriveTo",
     "FindNextHeading",
@@ -33,6 +35,7 @@ __all__ = [
 ]
 
 LEAVES = (
+    BackOut,
     ChooseHome,
     DriveTo,
     FindNextHeading,

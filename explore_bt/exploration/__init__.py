@@ -39,6 +39,7 @@ from explore_bt.exploration.frontier import Frontier, find_frontiers, frontier_m
 from explore_bt.exploration.gain import gain_many, visible_unknown_area
 from explore_bt.exploration.half_plane import HalfPlane, HalfPlaneHistory
 from explore_bt.exploration.passage import passage_field
+from explore_bt.exploration.retrace import way_back
 from explore_bt.exploration.revisit import is_allowed, repeated_visit
 from explore_bt.exploration.travel import nearest_reaching_cell, travel_field
 from explore_bt.exploration.viewpoint import LeftOpen, Viewpoint, ViewpointChoice, reachable_frontiers
@@ -73,4 +74,5 @@ __all__ = [
     "travel_field",
     "visible_unknown_area",
     "warm_up",
+    "way_back",
 ]

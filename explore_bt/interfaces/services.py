@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from explore_bt.exploration.clearance import clearance_field
 from explore_bt.interfaces.controller import ControlOutput
-from explore_bt.types import Estimate, OccupancyGrid, Path, Pose2, Scan2D
+from explore_bt.types import Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
 __all__ = ["MapView", "Pilot", "RobotServices"]
 
@@ -89,6 +89,9 @@ class RobotServices(Protocol):
 
     def estimate(self) -> Estimate:
         """The newest pose."""
+
+    def trajectory(self) -> Trajectory:
+        """The way driven so far, ``map`` frame, as SLAM believes it now."""
 
     def view(self) -> MapView:
         """The newest map."""

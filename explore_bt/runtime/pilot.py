@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +16,9 @@ __all__ = ["Pilot"]
 
 STALE_SCAN_S = 0.5
 """A scan older than this is no ground to drive on: five missed sweeps of a 10 Hz lidar."""
+JUMP_M = 0.03
+JUMP_RAD = math.radians(3.0)
+"""More than a body strays from its commands between two scans: the estimate was corrected."""
 
 _REST = 1e-4
 
@@ -33,6 +38,7 @@ class Pilot:
         self._blocked_since_s: float | None = None
         self._blocked_by_obstacle = False
         self._now_s = 0.0
+        self._shown: Estimate | None = None
 
     @property
     def output(self) -> ControlOutput:
@@ -69,7 +75,18 @@ class Pilot:
 
     def see(self, points: NDArray[np.float64], grid: OccupancyGrid, estimate: Estimate) -> None:
         """Show the newest scan (returns, ``map`` frame) and map to the gate."""
+        if self._has_jumped(estimate):
+            self._gate.forget_scans()
+        self._shown = estimate
         self._gate.see(points, grid, estimate.T_map_base)
+
+    def _has_jumped(self, estimate: Estimate) -> bool:
+        """Whether the pose is elsewhere than the last one and the commands since then lead to."""
+        if self._shown is None:
+            return False
+        expected = self._predictor.predict(self._shown, estimate.stamp_s).T_map_base
+        off = expected.inverse().compose(estimate.T_map_base)
+        return math.hypot(off.x, off.y) > JUMP_M or abs(off.yaw_rad) > JUMP_RAD
 
     def predict(self, estimate: Estimate, now_s: float) -> Estimate:
         """The estimate carried forward to now along the commands sent since its stamp."""

@@ -32,7 +32,7 @@ from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.tree import Blackboard, PortUnsetError, Status, halt
-from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D
+from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D, Trajectory
 
 __all__ = ["Robot"]
 
@@ -128,6 +128,10 @@ class Robot:
         if self._slam_fault:
             return replace(estimate, health=Health.LOST, reason=self._slam_fault)
         return estimate
+
+    def trajectory(self) -> Trajectory:
+        """The way driven so far."""
+        return self.slam.trajectory()
 
     def view(self) -> MapView:
         """The newest map, with the places that proved too tight closed."""

@@ -8,6 +8,7 @@ was checked the last time goes out instead. So by induction the robot can always
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass, replace
 
@@ -22,13 +23,12 @@ from explore_bt.types import FREE, OCCUPIED, MotionLimits, MotionState, Occupanc
 
 __all__ = ["GateDecision", "SafetyGate"]
 
-SCANS_KEPT = 5
-"""Scans that vote on a clearance: their median leaves the noise of one scan no luck to creep by."""
-VOTED_MARGIN_M = 0.013
-"""Beyond the footprint by that vote, which errs by millimetres where the lidar errs by centimetres."""
-NEWEST_MARGIN_M = -0.005
-"""Beyond the footprint by the newest scan alone, at a crawl: it speaks for what has just appeared and the
-vote cannot know yet; its own noise may not stop the robot in every door."""
+VOTES = ((1, -0.005), (5, 0.010), (15, 0.010))
+"""Scans that vote, and how far beyond the footprint (metres) the median of them must find room.
+
+The noise of one scan is centimetres, of fifteen millimetres. One lucky draw must not let the robot creep
+closer, so the slow vote asks for most; what has just appeared only the newest scans know, and they must
+not stop the robot in every door by an unlucky one."""
 HASTE_MARGIN_M = 0.02
 """More for both from ``FAST_MPS`` on, where less time is left to find out."""
 FAST_MPS = 0.3
@@ -38,6 +38,11 @@ INSIDE_SHARE = 0.6
 """Share of the needed clearance below which the robot counts as standing inside an obstacle."""
 ESCAPE_SLOPE = 0.1
 """Metres of clearance that a way out of too tight a place must win for every metre driven."""
+RESTART_WAY_M = 0.1
+"""Free way that the robot needs to set off again where the scans held it: no creeping by lucky draws."""
+ONWARD_STEP_M = 0.02
+MOST_BEND = 4.0
+"""1/m: a robot that bends more sharply is turning on the spot."""
 SAMPLE_S = 0.05
 
 _NEIGHBOURS = np.ones((3, 3), dtype=np.uint8)
@@ -67,7 +72,8 @@ class SafetyGate:
         self._limits = limits
         self._brake = _Brake(MotionState())
         self._window = _ClearanceWindow()
-        self._scans: deque[NDArray[np.float64]] = deque(maxlen=SCANS_KEPT)
+        self._is_held = False
+        self._scans: deque[NDArray[np.float64]] = deque(maxlen=max(count for count, _ in VOTES))
 
     def see(self, points: NDArray[np.float64], grid: OccupancyGrid, near: Pose2) -> None:
         """Take the newest scan and map.
@@ -80,6 +86,10 @@ class SafetyGate:
         is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
         self._scans.append(np.ascontiguousarray(points[is_near]))
         self._window.cut(grid, near, points)
+
+    def forget_scans(self) -> None:
+        """The scans seen so far no longer lie where the pose says: a loop closure moved it."""
+        self._scans.clear()
 
     def decide(self, wanted: Twist2, pose: Pose2, motion: MotionState, dt_s: float) -> GateDecision:
         """Pass ``wanted`` on, or go on along the brake that was checked last.
@@ -110,27 +120,37 @@ class SafetyGate:
 
     def _fault_on_the_way(self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float) -> str:
         ahead = self._way_to_rest(following, pose, motion, dt_s)
-        if not np.any(ahead - ahead[0]):
+        if not np.any(ahead[:, :2] - ahead[0, :2]):
             return ""  # a disc turning on the spot touches nothing that it does not touch already
-        on_grid = self._window.clearance_m(ahead)
+        on_grid = self._window.clearance_m(ahead[:, :2])
         in_map = _shortfall(on_grid, self._radius_m, "obstacle or unknown space in the map")
-        return in_map or self._fault_in_scans(ahead, abs(following.twist.linear_mps))
+        return in_map or self._fault_in_scans(ahead, following)
 
-    def _fault_in_scans(self, ahead: NDArray[np.float64], speed_mps: float) -> str:
+    def _fault_in_scans(self, ahead: NDArray[np.float64], following: MotionState) -> str:
         if not self._scans:
             return ""
-        by_scan = np.stack([_nearest_point_m(ahead, points) for points in self._scans])
+        if self._is_held:
+            ahead = np.vstack([ahead, _onward(ahead[-1], following.twist, RESTART_WAY_M)])
+        fault = self._shortfall_in_scans(ahead[:, :2], abs(following.twist.linear_mps))
+        self._is_held = bool(fault)
+        return fault
+
+    def _shortfall_in_scans(self, ahead: NDArray[np.float64], speed_mps: float) -> str:
+        by_scan = np.stack([_nearest_point_m(ahead, points) for points in reversed(self._scans)])
         needed_m = self._radius_m + min(speed_mps / FAST_MPS, 1.0) * HASTE_MARGIN_M
         # a way out must win clearance: were "no closer" enough, noise would let the robot creep closer
         gain_m = ESCAPE_SLOPE * float(np.hypot(*(ahead[-1] - ahead[0])))
-        voted = np.median(by_scan, axis=0)
-        in_vote = _shortfall(voted, needed_m + VOTED_MARGIN_M, "obstacle in the scans", gain_m)
-        return in_vote or _shortfall(by_scan[-1], needed_m + NEWEST_MARGIN_M, "obstacle in the newest scan")
+        for count, margin_m in reversed(VOTES):
+            room_m = np.median(by_scan[:count], axis=0)
+            obstacle = f"obstacle in the last {count} scans" if count > 1 else "obstacle in the newest scan"
+            if fault := _shortfall(room_m, needed_m + margin_m, obstacle, gain_m if count > 1 else 0.0):
+                return fault
+        return ""
 
     def _way_to_rest(
         self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float
     ) -> NDArray[np.float64]:
-        """(N, 2) float64 positions from here to rest; the first is here."""
+        """(N, 3) float64 x, y, yaw from here to rest; the first is here."""
         limits = self._limits
         duration = max(
             brake_duration_s(
@@ -175,6 +195,20 @@ def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str,
     if worst < min(needed_m, here) or (here < needed_m and clearance_m[-1] < here + gain_m):
         return f"the stop would end {worst:.3f} m from an {obstacle}, needs {needed_m:.3f} m"
     return ""
+
+
+def _onward(end: NDArray[np.float64], twist: Twist2, length_m: float) -> NDArray[np.float64]:
+    """(N, 3) poses every 2 cm for ``length_m`` beyond ``end``, along the twist's arc."""
+    v, w = twist.linear_mps, twist.angular_rps
+    bend = float(np.clip(w / v, -MOST_BEND, MOST_BEND)) if abs(v) > 1e-3 else 0.0
+    x, y, yaw = end
+    step_m = math.copysign(ONWARD_STEP_M, v)
+    out = []
+    for _ in range(round(length_m / ONWARD_STEP_M)):
+        middle = yaw + 0.5 * bend * step_m
+        x, y, yaw = x + step_m * math.cos(middle), y + step_m * math.sin(middle), yaw + bend * step_m
+        out.append((x, y, yaw))
+    return np.array(out)
 
 
 def _state_after(twist: Twist2, motion: MotionState, dt_s: float) -> MotionState:
@@ -285,9 +319,9 @@ def _roll_forward(
     angular: NDArray[np.float64],
     dt_s: float,
 ) -> NDArray[np.float64]:
-    """Positions here, after the period ``dt_s``, then every ``SAMPLE_S`` of the brake."""
-    out = np.empty((linear.shape[0] + 1, 2))
-    out[0, 0], out[0, 1] = x, y
+    """Poses (x, y, yaw) here, after the period ``dt_s``, then every ``SAMPLE_S`` of the brake."""
+    out = np.empty((linear.shape[0] + 1, 3))
+    out[0, 0], out[0, 1], out[0, 2] = x, y, yaw
     step = dt_s
     for i in range(linear.shape[0]):
         mean_v, mean_w = 0.5 * (v + linear[i]), 0.5 * (w + angular[i])
@@ -295,6 +329,6 @@ def _roll_forward(
         y += mean_v * step * np.sin(yaw + 0.5 * mean_w * step)
         yaw += mean_w * step
         v, w = linear[i], angular[i]
-        out[i + 1, 0], out[i + 1, 1] = x, y
+        out[i + 1, 0], out[i + 1, 1], out[i + 1, 2] = x, y, yaw
         step = SAMPLE_S
     return out

@@ -6,7 +6,7 @@ import numpy as np
 
 from explore_bt.errors import PlanningFailure
 from explore_bt.interfaces import ControlOutput, ControlStatus, MapView
-from explore_bt.types import FREE, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Twist2
+from explore_bt.types import FREE, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory, Twist2
 
 __all__ = ["FakePilot", "FakeRobot", "full_circle_scan", "open_floor"]
 
@@ -52,6 +52,7 @@ class FakeRobot:
         self.grid = grid
         self.latest_scan: Scan2D | None = full_circle_scan()
         self.refusal: PlanningFailure | None = None
+        self.driven: list[Pose2] = []
         self.avoided: list[tuple[float, float]] = []
 
     def now_s(self) -> float:
@@ -61,6 +62,11 @@ class FakeRobot:
     def estimate(self) -> Estimate:
         """``pose``, healthy."""
         return Estimate(self.time_s, self.pose)
+
+    def trajectory(self) -> Trajectory:
+        """``driven`` and ``pose``, a tenth of a second apart."""
+        poses = np.array([(p.x, p.y, p.yaw_rad) for p in (*self.driven, self.pose)])
+        return Trajectory(np.arange(len(poses)) * 0.1, poses)
 
     def view(self) -> MapView:
         """``grid``."""

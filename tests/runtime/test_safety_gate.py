@@ -106,7 +106,7 @@ def test_an_obstacle_only_the_scan_knows_is_enough_to_brake() -> None:
     pose, motion, reason = drive(gate, Twist2(0.5, 0.0), Pose2(0.6, 0.0, 0.0), 200)
     assert abs(motion.twist.linear_mps) < 1e-3
     assert math.hypot(2.0 - pose.x, 0.1 - pose.y) >= RADIUS
-    assert "in the scans" in reason
+    assert "obstacle in the last 15 scans" in reason
 
 
 def test_a_robot_that_stands_too_close_may_leave_but_not_come_closer() -> None:

@@ -1,0 +1,83 @@
+"""Leaf: leave a tight place the way it was entered."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.exploration import clearance_at, way_back
+from explore_bt.interfaces import ControlStatus
+from explore_bt.tree import Input, Leaf, Status
+from explore_bt.types import Path
+from explore_bt.units import Duration, Length
+
+__all__ = ["BackOut"]
+
+
+class BackOut(Leaf):
+    """Drives back along its own track to the first place with room around it.
+
+    Where the footprint went in it fits out again, whatever the map's cells make of the passage.
+    SUCCESS there; FAILURE if the track is too short, or the safety gate holds the robot on it.
+    """
+
+    type_key = "back_out"
+
+    room: Input[float] = Input(
+        Length, default=0.15, ge=0.0, doc="free space beyond the footprint that is enough"
+    )
+    at_least: Input[float] = Input(Length, default=0.5, ge=0.0, doc="so far back in any case")
+    at_most: Input[float] = Input(Length, default=5.0, ge=0.1, doc="no farther back than this")
+    patience: Input[float] = Input(
+        Duration, default=4.0, ge=0.0, doc="how long the safety gate may hold the robot"
+    )
+
+    def initialise(self) -> None:
+        """Hand the controller the track."""
+        track = way_back(self.robot.trajectory().poses[:, :2], self.at_most)
+        clearance_m = clearance_at(self.robot.view().grid, track, self._enough_m)
+        path = _path_along(track, clearance_m, self._enough_m, self.at_least)
+        self._has_way = path is not None
+        if path is not None:
+            self.robot.pilot.follow(path)
+            self.say(f"{path.length_m:.1f} m back along the way driven")
+
+    def update(self) -> Status:
+        """Until the place is reached."""
+        if not self._has_way:
+            self.say("no way back: nothing driven yet")
+            return Status.FAILURE
+        output = self.robot.pilot.output
+        if output.status is ControlStatus.ARRIVED:
+            return Status.SUCCESS
+        if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:
+            self.say(f"held on the way back: {output.reason or self.robot.pilot.gate_reason}")
+            return Status.FAILURE
+        return Status.RUNNING
+
+    def terminate(self, new_status: Status) -> None:
+        """A way back that is cut off comes to rest."""
+        if new_status is not Status.SUCCESS:
+            self.robot.pilot.hold()
+
+    @property
+    def _enough_m(self) -> float:
+        return self.robot.footprint_radius_m + self.room
+
+
+def _path_along(
+    track: NDArray[np.float64], clearance_m: NDArray[np.float32], enough_m: float, at_least_m: float
+) -> Path | None:
+    """The track up to the first place with room, or to its end; None if it goes nowhere."""
+    if len(track) < 2:
+        return None
+    steps = np.diff(track, axis=0)
+    along_m = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
+    is_enough = (clearance_m >= enough_m) & (along_m >= at_least_m)
+    last = int(np.argmax(is_enough)) if is_enough.any() else len(track) - 1
+    track, clearance_m = track[: last + 1], clearance_m[: last + 1]
+    smooth = track.copy()
+    smooth[1:-1] = (track[:-2] + track[1:-1] + track[2:]) / 3.0
+    heading = np.arctan2(*np.diff(smooth, axis=0).T[::-1])
+    poses = np.column_stack((smooth, np.append(heading, heading[-1])))
+    return Path(poses, clearance_m.astype(np.float64))
