@@ -66,7 +66,7 @@ class FakeRobot:
     def trajectory(self) -> Trajectory:
         """``driven`` and ``pose``, a tenth of a second apart."""
         poses = np.array([(p.x, p.y, p.yaw_rad) for p in (*self.driven, self.pose)])
-        return Trajectory(np.arange(len(poses)) * 0.1, poses)
+        return Trajectory(np.linspace(0.0, 0.1 * len(self.driven), len(poses)), poses)
 
     def view(self) -> MapView:
         """``grid``."""
