@@ -22,7 +22,7 @@ from explore_bt.units import Area, Length
 __all__ = ["FindViewpoint"]
 
 _HERE_M = 0.3
-_SQUEEZE_M = 0.02  # the map's cells are coarser than this: where nothing else is left, the gate decides
+_SQUEEZE_M = 0.03  # half a cell and a little: where nothing else is left, the finer gate decides
 _SAME_FRONTIER_M = 0.5
 _TRIES = 3
 _WORTH_M_PER_M2 = 0.3

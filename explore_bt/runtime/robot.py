@@ -37,7 +37,7 @@ from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D,
 __all__ = ["Robot"]
 
 DEFAULT_LIDAR_RANGE_M = 5.0
-SQUEEZES_M = (0.02, 0.05)
+SQUEEZES_M = (0.03, 0.05)
 """How much too narrow a passage may be drawn and still be tried, when no other way is left."""
 REASON_KEY = "reason"
 """Blackboard entry in which a tree may say why it ended."""
