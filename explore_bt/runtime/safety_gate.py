@@ -30,8 +30,8 @@ The noise of one scan is centimetres, of fifteen millimetres. One lucky draw mus
 closer, so the slow vote asks for most; what has just appeared only the newest scans know, and they must
 not stop the robot in every door by an unlucky one."""
 HASTE_MARGIN_M = 0.02
-"""More for both from ``FAST_MPS`` on, where less time is left to find out."""
-FAST_MPS = 0.3
+CRAWL_MPS, FAST_MPS = 0.1, 0.3
+"""More for all of them from a crawl on, all of ``HASTE_MARGIN_M`` when fast: less time is left to find out."""
 LOOK_AHEAD_M = 1.5
 """How far around the robot map and points are looked at: any stop from 0.8 m/s, plus the footprint."""
 INSIDE_SHARE = 0.6
@@ -137,7 +137,7 @@ class SafetyGate:
 
     def _shortfall_in_scans(self, ahead: NDArray[np.float64], speed_mps: float) -> str:
         by_scan = np.stack([_nearest_point_m(ahead, points) for points in reversed(self._scans)])
-        needed_m = self._radius_m + min(speed_mps / FAST_MPS, 1.0) * HASTE_MARGIN_M
+        needed_m = self._radius_m + _haste(speed_mps) * HASTE_MARGIN_M
         # a way out must win clearance: were "no closer" enough, noise would let the robot creep closer
         gain_m = ESCAPE_SLOPE * float(np.hypot(*(ahead[-1] - ahead[0])))
         for count, margin_m in reversed(VOTES):
@@ -195,6 +195,11 @@ def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str,
     if worst < min(needed_m, here) or (here < needed_m and clearance_m[-1] < here + gain_m):
         return f"the stop would end {worst:.3f} m from an {obstacle}, needs {needed_m:.3f} m"
     return ""
+
+
+def _haste(speed_mps: float) -> float:
+    """0 at a crawl, 1 when fast."""
+    return min(max((speed_mps - CRAWL_MPS) / (FAST_MPS - CRAWL_MPS), 0.0), 1.0)
 
 
 def _onward(end: NDArray[np.float64], twist: Twist2, length_m: float) -> NDArray[np.float64]:
