@@ -31,7 +31,7 @@ closer, so the slow vote asks for most; what has just appeared only the newest s
 not stop the robot in every door by an unlucky one."""
 HASTE_MARGIN_M = 0.02
 CRAWL_MPS, FAST_MPS = 0.1, 0.3
-"""More for all of them from a crawl on, all of ``HASTE_MARGIN_M`` when fast: less time is left to find out."""
+"""More for all of them beyond a crawl, all of it when fast, where less time is left to find out."""
 LOOK_AHEAD_M = 1.5
 """How far around the robot map and points are looked at: any stop from 0.8 m/s, plus the footprint."""
 INSIDE_SHARE = 0.6
