@@ -2,7 +2,7 @@
 
 Before each command the gate rolls the robot forward: the control period under the wanted twist, then
 the jerk-limited brake to rest, turning included. Every place on that way must be free for the footprint,
-in the newest scan and in the newest map, where unknown counts as obstacle. If one is not, the brake that
+in the last scans and in the newest map, where unknown counts as obstacle. If one is not, the brake that
 was checked the last time goes out instead. So by induction the robot can always stop in free space.
 """
 
@@ -10,25 +10,23 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from explore_bt.exploration import clearance_field
 from explore_bt.runtime.brake import brake_duration_s, brake_velocity
-from explore_bt.types import FREE, OCCUPIED, MotionLimits, MotionState, OccupancyGrid, Pose2, Twist2
+from explore_bt.runtime.clearance_window import ClearanceWindow
+from explore_bt.types import MotionLimits, MotionState, OccupancyGrid, Pose2, Twist2
 
 __all__ = ["GateDecision", "SafetyGate"]
 
 VOTES = ((1, -0.005), (5, 0.010), (15, 0.010))
 """Scans that vote, and how far beyond the footprint (metres) the median of them must find room.
 
-The noise of one scan is centimetres, of fifteen millimetres. One lucky draw must not let the robot creep
-closer, so the slow vote asks for most; what has just appeared only the newest scans know, and they must
-not stop the robot in every door by an unlucky one."""
+One scan errs by centimetres, the median of five by one, of fifteen by half of that. Only the newest knows
+what has just appeared, but its noise may not stop the robot in every door, so alone it may fall short."""
 HASTE_MARGIN_M = 0.02
 CRAWL_MPS, FAST_MPS = 0.1, 0.3
 """More for all of them beyond a crawl, all of it when fast, where less time is left to find out."""
@@ -44,8 +42,6 @@ ONWARD_STEP_M = 0.02
 MOST_BEND = 4.0
 """1/m: a robot that bends more sharply is turning on the spot."""
 SAMPLE_S = 0.05
-
-_NEIGHBOURS = np.ones((3, 3), dtype=np.uint8)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +67,7 @@ class SafetyGate:
         self._radius_m = footprint_radius_m
         self._limits = limits
         self._brake = _Brake(MotionState())
-        self._window = _ClearanceWindow()
+        self._window = ClearanceWindow(LOOK_AHEAD_M)
         self._is_held = False
         self._scans: deque[NDArray[np.float64]] = deque(maxlen=max(count for count, _ in VOTES))
 
@@ -242,63 +238,6 @@ def _brake_velocities(
         times_s,
     )
     return linear, angular
-
-
-class _ClearanceWindow:
-    """Clearance of the map around the robot; outside the window nothing is known, so nothing is free.
-
-    An obstacle that the scan shows is judged by the scan, which is finer than a cell. The map answers for
-    what the scan does not show: things out of its sight or plane, and unknown space.
-    """
-
-    def __init__(self) -> None:
-        self._field = np.zeros((1, 1), dtype=np.float32)
-        self._origin_xy = (0.0, 0.0)
-        self._resolution_m = 1.0
-
-    def cut(self, grid: OccupancyGrid, near: Pose2, seen: NDArray[np.float64]) -> None:
-        """Take the map around ``near``, without the obstacles that the scan's points (N, 2) show."""
-        row, col = grid.cell_of(near.x, near.y)
-        reach = int(LOOK_AHEAD_M / grid.resolution_m)
-        row0, col0 = max(0, row - reach), max(0, col - reach)
-        cells = grid.cells[row0 : max(row0, row + reach + 1), col0 : max(col0, col + reach + 1)]
-        if cells.size == 0:
-            self._field = np.zeros((1, 1), dtype=np.float32)
-            return
-        resolution = grid.resolution_m
-        origin = (grid.origin_xy[0] + col0 * resolution, grid.origin_xy[1] + row0 * resolution)
-        self._field = clearance_field(_without_seen(OccupancyGrid(cells, resolution, origin), seen))
-        self._origin_xy = origin
-        self._resolution_m = resolution
-
-    def clearance_m(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(N,) metres at (N, 2) positions."""
-        return _sample(self._field, *self._origin_xy, self._resolution_m, positions)
-
-
-def _without_seen(grid: OccupancyGrid, seen: NDArray[np.float64]) -> OccupancyGrid:
-    """The grid with its occupied cells free where a point (N, 2) lies in them or in a neighbour."""
-    rows, cols = grid.shape
-    at = grid.cells_of(seen)
-    at = at[(at[:, 0] >= 0) & (at[:, 0] < rows) & (at[:, 1] >= 0) & (at[:, 1] < cols)]
-    shown = np.zeros((rows, cols), dtype=np.uint8)
-    shown[at[:, 0], at[:, 1]] = 1
-    shown = cv2.dilate(shown, _NEIGHBOURS)
-    is_shown = (grid.cells == OCCUPIED) & (shown > 0)
-    return replace(grid, cells=np.where(is_shown, FREE, grid.cells).astype(np.int8))
-
-
-@njit(cache=True)
-def _sample(
-    field: NDArray[np.float32], x0: float, y0: float, resolution: float, positions: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    out = np.zeros(positions.shape[0])
-    for i in range(positions.shape[0]):
-        col = int(np.floor((positions[i, 0] - x0) / resolution))
-        row = int(np.floor((positions[i, 1] - y0) / resolution))
-        if 0 <= row < field.shape[0] and 0 <= col < field.shape[1]:
-            out[i] = field[row, col]
-    return out
 
 
 @njit(cache=True)
