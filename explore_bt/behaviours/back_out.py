@@ -26,7 +26,9 @@ class BackOut(Leaf):
     room: Input[float] = Input(
         Length, default=0.15, ge=0.0, doc="free space beyond the footprint that is enough"
     )
-    at_least: Input[float] = Input(Length, default=0.5, ge=0.0, doc="so far back in any case")
+    at_least: Input[float] = Input(
+        Length, default=0.5, ge=0.0, doc="so far back in any case; 0: not at all where there is room"
+    )
     at_most: Input[float] = Input(Length, default=5.0, ge=0.1, doc="no farther back than this")
     patience: Input[float] = Input(
         Duration, default=4.0, ge=0.0, doc="how long the safety gate may hold the robot"
@@ -36,14 +38,18 @@ class BackOut(Leaf):
         """Hand the controller the track."""
         track = way_back(self.robot.trajectory().poses[:, :2], self.at_most)
         clearance_m = clearance_at(self.robot.view().grid, track, self._enough_m)
-        path = _path_along(track, clearance_m, self._enough_m, self.at_least)
-        self._has_way = path is not None
-        if path is not None:
+        self._has_room = bool(clearance_m[0] >= self._enough_m) and self.at_least == 0.0
+        self._has_way = len(track) > 1
+        if self._has_way and not self._has_room:
+            path = _path_along(track, clearance_m, self._enough_m, self.at_least)
             self.robot.pilot.follow(path)
             self.say(f"{path.length_m:.1f} m back along the way driven")
 
     def update(self) -> Status:
         """Until the place is reached."""
+        if self._has_room:
+            self.say("there is room here")
+            return Status.SUCCESS
         if not self._has_way:
             self.say("no way back: nothing driven yet")
             return Status.FAILURE
@@ -67,13 +73,11 @@ class BackOut(Leaf):
 
 def _path_along(
     track: NDArray[np.float64], clearance_m: NDArray[np.float32], enough_m: float, at_least_m: float
-) -> Path | None:
-    """The track up to the first place with room, or to its end; None if it goes nowhere."""
-    if len(track) < 2:
-        return None
+) -> Path:
+    """The track (two places or more) up to the first with room after the first, or to its end."""
     steps = np.diff(track, axis=0)
     along_m = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
-    is_enough = (clearance_m >= enough_m) & (along_m >= at_least_m)
+    is_enough = (clearance_m >= enough_m) & (along_m >= at_least_m) & (along_m > 0.0)
     last = int(np.argmax(is_enough)) if is_enough.any() else len(track) - 1
     track, clearance_m = track[: last + 1], clearance_m[: last + 1]
     smooth = track.copy()

@@ -53,6 +53,14 @@ def test_where_there_is_room_at_once_it_still_goes_a_little(robot: FakeRobot) ->
     assert robot.pilot.followed[0].length_m == pytest.approx(0.7, abs=0.06)
 
 
+def test_where_there_is_room_it_need_not_move_at_all(robot: FakeRobot) -> None:
+    robot.grid = open_floor()
+    leaf = BackOut("out", robot, Blackboard(), {"at_least": 0.0})
+    leaf.tick_once()
+    assert (leaf.status, leaf.feedback_message) == (Status.SUCCESS, "there is room here")
+    assert not robot.pilot.followed
+
+
 def test_without_room_it_goes_as_far_as_allowed(robot: FakeRobot) -> None:
     leaf = BackOut("out", robot, Blackboard(), {"at_most": 1.0})
     leaf.tick_once()
