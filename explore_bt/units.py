@@ -195,9 +195,13 @@ PoseTriple = Annotated[
 def _resolve_file(value: object, info: ValidationInfo) -> Path:
     if not isinstance(value, str | Path) or not str(value):
         raise ValueError(f"{value} is not a file name")
-    base = (info.context or {}).get("base_dir")
+    context = info.context or {}
+    base = context.get("base_dir")
     path = Path(value).expanduser()
-    return path if path.is_absolute() or base is None else Path(base) / path
+    path = path if path.is_absolute() or base is None else Path(base) / path
+    if context.get("must_exist") and not path.is_file():
+        raise ValueError(f"there is no file {path}")
+    return path
 
 
 FilePath = Annotated[
@@ -205,4 +209,5 @@ FilePath = Annotated[
     PlainValidator(_resolve_file),
     WithJsonSchema({"type": "string", "description": "a file, relative to the mission's folder"}),
 ]
-"""A file; a relative one is looked up in the folder given as ``base_dir`` in the validation context."""
+"""A file; a relative one is looked up in the folder given as ``base_dir`` in the validation context,
+and has to be there where that context says ``must_exist``."""

@@ -74,7 +74,7 @@ def check_model(
     silent = broken | {entry.key for entry in keyed}
     try:
         checked = model.model_validate_json(
-            _json(plain_data(kept)), strict=True, context={"base_dir": folder}
+            _json(plain_data(kept)), strict=True, context={"base_dir": folder, "must_exist": True}
         )
     except ValidationError as error:
         told = [each for each in error.errors(include_url=False) if not set(each["loc"][:1]) & silent]

@@ -166,3 +166,20 @@ class FakeRobot:
 @pytest.fixture
 def robot() -> FakeRobot:
     return FakeRobot()
+
+
+@pytest.fixture
+def furnish() -> Callable[[Path], None]:
+    """Puts the world file that ``good`` names into a mission's folder."""
+
+    def furnish(folder: Path) -> None:
+        (folder / "worlds").mkdir(parents=True)
+        (folder / "worlds/flat.yaml").touch()
+
+    return furnish
+
+
+@pytest.fixture(autouse=True)
+def furnished(furnish: Callable[[Path], None], tmp_path: Path) -> None:
+    """Most missions of these tests lie in ``tmp_path`` itself."""
+    furnish(tmp_path)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,9 +16,10 @@ trees:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, good: str) -> Path:
+def folder(tmp_path: Path, good: str, furnish: Callable[[Path], None]) -> Path:
     """A mission in a folder of its own, with a file outside that it must not reach."""
-    (tmp_path / "missions" / "trees").mkdir(parents=True)
+    furnish(tmp_path / "missions")
+    (tmp_path / "missions" / "trees").mkdir()
     (tmp_path / "secret.yaml").write_text("doc: secret\n")
     (tmp_path / "missions" / "m.yaml").write_text(good + "include: [trees/more.yaml]\n")
     return tmp_path / "missions"

@@ -112,7 +112,9 @@ def test_a_required_port_is_not_met_by_a_parameter_that_is_not_given(load, good)
         load(text.replace("[home, {drive: {goal: $goal}}]", "[home, {drive: {goal: $params.stride}}]"))
 
 
-def test_the_environment_is_read_as_yaml_scalars(load, good) -> None:
+def test_the_environment_is_read_as_yaml_scalars(load, good, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "w.yaml").touch()
     text = good.replace("world: $params.world", "world: $env.WORLD, beams: $env.COUNT")
     options = load(text).robots[0].driver.options
     assert (options.world, options.beams) == (Path.cwd() / "w.yaml", 72)
@@ -130,10 +132,10 @@ def test_a_robot_may_have_a_tree_of_its_own(load, good) -> None:
     assert mission.robots[0].tree.path == "go_home"
 
 
-def test_the_digest_follows_text_and_parameters_but_not_the_folder(catalog, good, tmp_path) -> None:
+def test_the_digest_follows_text_and_parameters_but_not_the_folder(catalog, good, tmp_path, furnish) -> None:
     digests = []
     for folder, overrides in (("a", []), ("b", []), ("c", ["stride=2 m"])):
-        (tmp_path / folder).mkdir()
+        furnish(tmp_path / folder)
         (tmp_path / folder / "m.yaml").write_text(good)
         digests.append(load_mission(tmp_path / folder / "m.yaml", catalog, overrides).sha256)
     assert digests[0] == digests[1] != digests[2]

@@ -28,6 +28,8 @@ def test_an_override_can_take_a_value_away(load) -> None:
 
 def test_files_in_overrides_are_relative_to_the_current_directory(catalog, tmp_path, good) -> None:
     (tmp_path / "sub").mkdir()
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps/a b.yaml").touch()
     (tmp_path / "sub" / "m.yaml").write_text(good)
     mission = load_mission(tmp_path / "sub" / "m.yaml", catalog, ["world=maps/a b.yaml"], cwd=tmp_path)
     assert mission.params["world"] == tmp_path / "maps" / "a b.yaml"
