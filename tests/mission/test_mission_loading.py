@@ -147,6 +147,15 @@ def test_limits_only_ever_make_the_body_slower() -> None:
     assert limits.jerk_mps3 == MotionLimits().jerk_mps3
 
 
+def test_a_file_that_a_plugin_needs_must_be_there(load, good, tmp_path) -> None:
+    with pytest.raises(MissionError) as caught:
+        load(good.replace("world: $params.world", "world: worlds/attic.yaml"))
+    assert (
+        str(caught.value).splitlines()[0]
+        == f"m.yaml:12:31  world: there is no file {tmp_path}/worlds/attic.yaml"
+    )
+
+
 def test_a_missing_mission_file_is_one_plain_line(catalog, tmp_path) -> None:
     path = tmp_path / "none.yaml"
     with pytest.raises(MissionError) as caught:
