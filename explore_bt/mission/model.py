@@ -38,11 +38,13 @@ class RobotSpec:
 
     Attributes:
         start: pose of ``base_link`` in ``map``; None leaves it to the driver.
+        saved_map: folder with the state that SLAM saved in an earlier run; None begins a new map.
         tree: root of its behaviour tree.
     """
 
     name: str
     start: Pose2 | None
+    saved_map: Path | None
     driver: PluginChoice[Driver]
     slam: PluginChoice[Slam]
     planner: PluginChoice[Planner]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, cast
 
 from pydantic import TypeAdapter
@@ -22,12 +23,12 @@ from explore_bt.mission.references import BROKEN, Scope, resolve
 from explore_bt.mission.source import Place
 from explore_bt.mission.words import did_you_mean
 from explore_bt.types import Pose2
-from explore_bt.units import PoseTriple
+from explore_bt.units import FilePath, PoseTriple
 
 __all__ = ["PLUGINS", "ROBOT_KEYS", "read_robot", "unknown_plugin"]
 
 PLUGINS = ("driver", "slam", "planner", "controller")
-ROBOT_KEYS = ("start", *PLUGINS, "tree", "doc")
+ROBOT_KEYS = ("start", "map", *PLUGINS, "tree", "doc")
 _ROBOT_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 
@@ -51,6 +52,7 @@ def read_robot(
     entries = expect_entries(entry.value, f"robots.{entry.key}", example, faults) or Entries((), entry.place)
     check_keys(entries, ROBOT_KEYS, f"robot {entry.key}", faults)
     start = _start(entries.get("start"), scope, faults)
+    saved_map = _saved_map(entries.get("map"), scope, faults)
     tree = read_tree(entries.get("tree"), entry.place)
     resolved = Entries(
         tuple(Entry(e.key, e.place, resolve(e.value, scope, faults)) for e in entries if e.key in PLUGINS),
@@ -63,6 +65,7 @@ def read_robot(
     return RobotSpec(
         entry.key,
         start,
+        saved_map,
         cast(PluginChoice[Driver], driver),
         cast(PluginChoice[Slam], slam),
         cast(PluginChoice[Planner], planner),
@@ -80,6 +83,26 @@ def _start(value: Value | None, scope: Scope, faults: Faults) -> Pose2 | None:
     adapter: TypeAdapter[tuple[float, float, float]] = TypeAdapter(PoseTriple)
     pose = check_value(lambda text: adapter.validate_json(text, strict=True), found, "start", Asked(), faults)
     return Pose2(*pose) if isinstance(pose, tuple) else None
+
+
+def _saved_map(value: Value | None, scope: Scope, faults: Faults) -> Path | None:
+    if value is None:
+        return None
+    found = resolve(value, scope, faults)
+    if isinstance(found, Scalar) and found.data is None:
+        return None
+    adapter: TypeAdapter[Path] = TypeAdapter(FilePath)
+    context = {"base_dir": found.place.source.folder}
+    folder = check_value(
+        lambda text: adapter.validate_json(text, context=context), found, "map", Asked(), faults
+    )
+    if not isinstance(folder, Path):
+        return None
+    if not folder.is_dir():
+        faults.add(
+            found.place, f"map: there is no folder {folder}", "give the folder slam/ of an earlier run"
+        )
+    return folder
 
 
 def _choose(

@@ -31,6 +31,7 @@ def mission_schema(catalog: PluginCatalog) -> Schema:
     """JSON Schema 2020-12 of a mission, for yaml-language-server and others."""
     robot = {
         "start": _or_constant({"anyOf": [TypeAdapter(PoseTriple).json_schema(), {"type": "null"}]}),
+        "map": {"type": ["string", "null"], "description": "folder slam/ of an earlier run, to go on in"},
         **{kind: _plugins(catalog, kind) for kind in PLUGINS},
         "tree": {"anyOf": [{"type": "string"}, _NODE], "description": "a name in trees, or a node"},
         "doc": {"type": "string"},

@@ -24,6 +24,8 @@ __all__ = ["run_mission"]
 
 _log = logging.getLogger("explore_bt")
 
+SAVED_MAP = "slam"
+"""Folder of the results with the state of SLAM; a robot with ``map:`` goes on in it."""
 LEFT_OPEN_KEY = "left_open"
 """Blackboard entry in which a tree lists what it could not explore, one sentence each."""
 
@@ -111,7 +113,7 @@ def _result(
         mission=mission.name,
         coverage=score.coverage,
         contacts=sum(contacts) if contacts else None,
-        ate_rmse_m=robot.scores.ate_rmse_m(robot.slam.trajectory()),
+        ate_rmse_m=robot.scores.ate_rmse_m(robot.trajectory()),
         path_length_m=score.distance_m,
         mission_time_s=runner.now_s,
         wall_time_s=wall_time_s,
@@ -132,7 +134,7 @@ def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Pa
         folder = out if len(robots) == 1 else out / robot.name
         folder.mkdir(exist_ok=True)
         product = RobotProduct(
-            robot.name, robot.slam.grid(), robot.slam.trajectory(), robot.scores.true_trajectory(), result
+            robot.name, robot.slam.grid(), robot.trajectory(), robot.scores.true_trajectory(), result
         )
         for name in registry.names("exporter"):
             make: type[Exporter] = registry.get("exporter", name)
@@ -140,3 +142,7 @@ def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Pa
                 make(make.Options()).export(product, folder)
             except Exception:  # one format that cannot be written must not cost the others
                 _log.exception("exporter %s wrote nothing", name)
+        try:
+            robot.slam.save(folder / SAVED_MAP)
+        except Exception:  # nor may a state that cannot be saved
+            _log.exception("slam %s saved nothing", robot.slam.name)

@@ -90,6 +90,9 @@ class Robot:
         self.home = self.driver.start
         warm_up()
         self.slam.setup(context)
+        if self._spec.saved_map is not None:
+            self.slam.load(self._spec.saved_map)
+        self._poses_before = len(self.slam.trajectory().stamps_s)
         self._planner.setup(context)
         self._controller.setup(context)
         gate = SafetyGate(self.driver.footprint_radius_m, limits)
@@ -130,8 +133,9 @@ class Robot:
         return estimate
 
     def trajectory(self) -> Trajectory:
-        """The way driven so far."""
-        return self.slam.trajectory()
+        """The way driven in this mission; what a loaded map brings along is left out."""
+        whole = self.slam.trajectory()
+        return Trajectory(whole.stamps_s[self._poses_before :], whole.poses[self._poses_before :])
 
     def view(self) -> MapView:
         """The newest map, with the places that proved too tight closed."""

@@ -156,6 +156,18 @@ def test_a_file_that_a_plugin_needs_must_be_there(load, good, tmp_path) -> None:
     )
 
 
+def test_a_saved_map_is_a_folder_that_is_there(load, good, tmp_path) -> None:
+    (tmp_path / "slam").mkdir()
+    robot = load(good.replace("    start:", "    map: slam\n    start:")).robots[0]
+    assert robot.saved_map == tmp_path / "slam"
+    assert load(good).robots[0].saved_map is None
+    with pytest.raises(MissionError) as caught:
+        load(good.replace("    start:", "    map: gone\n    start:"))
+    assert str(caught.value).splitlines()[0] == (
+        f"m.yaml:11:10  map: there is no folder {tmp_path}/gone    give the folder slam/ of an earlier run"
+    )
+
+
 def test_a_missing_mission_file_is_one_plain_line(catalog, tmp_path) -> None:
     path = tmp_path / "none.yaml"
     with pytest.raises(MissionError) as caught:

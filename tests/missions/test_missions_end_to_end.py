@@ -5,6 +5,7 @@ import os
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from explore_bt.interfaces import PluginOptions, RunInfo, Sink, TickSnapshot
@@ -163,3 +164,24 @@ def test_a_spent_distance_budget_ends_the_mission(run: RunMission) -> None:
     assert result.outcome is Outcome.BUDGET
     assert "distance budget" in result.reason
     assert 1.5 <= result.path_length_m < 2.5
+
+
+def test_a_mission_goes_on_in_yesterdays_map(run: RunMission, tmp_path: Path) -> None:
+    first = run("02_any_map.yaml", "world=missions/worlds/room.yaml", out="yesterday")
+    again = run(
+        "02_any_map.yaml",
+        "world=missions/worlds/room.yaml",
+        f"map={tmp_path}/yesterday/slam",
+        out="today",
+        seed=1,
+    )
+    assert again.outcome is Outcome.EXPLORED
+    assert again.coverage is not None
+    assert first.coverage is not None
+    assert again.coverage >= first.coverage - 0.01
+    assert again.path_length_m < 0.2 * first.path_length_m
+    assert again.ate_rmse_m is not None
+    assert again.ate_rmse_m < 0.02
+    stamps = np.loadtxt(tmp_path / "today/trajectory.tum", ndmin=2)[:, 0]
+    assert stamps.max() <= again.mission_time_s
+    assert (np.diff(stamps) > 0.0).all()
