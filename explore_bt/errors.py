@@ -6,6 +6,8 @@
     ├── UserError                 the user's input is at fault: exit code 2, no traceback
     │   ├── MissionError          a mission file: carries every fault found in it
     │   ├── WorldError            a world, map or start pose
+    │   ├── LogError              a recorded log that cannot be read
+    │   │   └── LogCutOff         one that ends in the middle; what came before it was sound
     │   └── PluginError           a plugin that is unknown, broken, doubled or wrongly configured
     ├── PlanningFailure           a planner's typed "no": a tree can branch on its class
     │   ├── NoPath · StartBlocked · GoalBlocked · GoalUnknown · Cancelled
@@ -27,6 +29,8 @@ __all__ = [
     "Fault",
     "GoalBlocked",
     "GoalUnknown",
+    "LogCutOff",
+    "LogError",
     "MissionError",
     "NoPath",
     "PlanningFailure",
@@ -82,6 +86,14 @@ class MissionError(UserError):
 
 class WorldError(UserError):
     """A world or map file that cannot be used, or a start pose that lies in a wall."""
+
+
+class LogError(UserError):
+    """A recorded log, or relations to judge it by, that cannot be read; names the line or the byte."""
+
+
+class LogCutOff(LogError):
+    """A log that ends in the middle of a message; all before it has been read and is sound."""
 
 
 class PluginError(UserError):

@@ -1,0 +1,6 @@
+"""Recorded logs, played as a robot's measurements."""
+
+from explore_bt_drivers.replay.carmen_log import CarmenLog
+from explore_bt_drivers.replay.log import MeasurementLog
+
+__all__ = ["CarmenLog", "MeasurementLog"]
