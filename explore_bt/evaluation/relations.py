@@ -61,7 +61,7 @@ class RelationErrors:
 
 
 def read_relations(path: Path) -> tuple[Relation, ...]:
-    """Relations from lines ``t1 t2 x y z roll pitch yaw``: the pose of t2 in the frame of t1, metres, radians.
+    """Relations from lines ``t1 t2 x y z roll pitch yaw``, metres and radians: t2's pose in the frame of t1.
 
     Blank lines and lines that begin with ``#`` are passed over. Of a planar robot z, roll and pitch say
     nothing and are not used.

@@ -2,5 +2,6 @@
 
 from explore_bt_drivers.replay.carmen_log import CarmenLog
 from explore_bt_drivers.replay.log import MeasurementLog
+from explore_bt_drivers.replay.stamps import ReplayTime
 
-__all__ = ["CarmenLog", "MeasurementLog"]
+__all__ = ["CarmenLog", "MeasurementLog", "ReplayTime"]

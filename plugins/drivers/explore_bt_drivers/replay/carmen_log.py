@@ -40,8 +40,8 @@ class CarmenLog(MeasurementLog):
     repeat that odometry unsynchronised, and are played only on demand.
 
     A ``FLASER`` line does not say where the laser looks nor how far: beam i points to
-    ``-fov / 2 + i · step``, counter-clockwise, with ``step`` = fov over the number of beams (one less where it is odd, as in 181 or
-    361). The laser is taken to sit in ``base_link``: the line's first pose is the laser's in some logs and
+    ``-fov / 2 + i · step``, counter-clockwise, with ``step`` = fov over the number of beams (one less where
+    it is odd, as in 181 or 361). The laser is taken to sit in ``base_link``: the line's first pose is the laser's in some logs and
     one corrected by a SLAM in others. A ``ROBOTLASER1`` line says all of it.
 
     Args:
@@ -113,7 +113,7 @@ class CarmenLog(MeasurementLog):
         """(count,) float64 directions of a ``FLASER`` line's beams, shared by all scans of that size."""
         if count not in self._angles:
             steps = max(count - count % 2, 1)
-            angles: NDArray[np.float64] = -0.5 * self._fov_rad + np.arange(count) * (self._fov_rad / steps)
+            angles = _evenly(-0.5 * self._fov_rad, self._fov_rad / steps, count)
             angles.setflags(write=False)
             self._angles[count] = angles
         return self._angles[count]
@@ -147,7 +147,7 @@ def _robotlaser(line: CarmenLine) -> Iterator[Measurement]:
     stamp_s = line.number("the time stamp")
     line.end(2, "a host name and the logger's time stamp")
     step_rad = step_rad or fov_rad / max(count - 1, 1)
-    angles: NDArray[np.float64] = start_rad + np.arange(count) * step_rad
+    angles = _evenly(start_rad, step_rad, count)
     yield WheelOdometry(stamp_s, robot)
     yield _scan(stamp_s, angles, ranges, range_max_m, robot.between(laser))
 
@@ -159,6 +159,10 @@ def _odometry(line: CarmenLine) -> WheelOdometry:
     stamp_s = line.number("the time stamp")
     line.end(2, "a host name and the logger's time stamp")
     return WheelOdometry(stamp_s, pose)
+
+
+def _evenly(first_rad: float, step_rad: float, count: int) -> NDArray[np.float64]:
+    return first_rad + step_rad * np.arange(count, dtype=np.float64)
 
 
 def _scan(
