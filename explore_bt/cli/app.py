@@ -12,6 +12,7 @@ from explore_bt.cli.plugins import plugins
 from explore_bt.cli.run import run
 from explore_bt.cli.schema import schema
 from explore_bt.cli.show import show
+from explore_bt.cli.slam import slam
 from explore_bt.version import __version__
 
 __all__ = ["app", "main"]
@@ -22,6 +23,7 @@ explore-bt {__version__}: a robot explores a building it has never seen
   explore-bt run 01_apartment           drive a mission; map, report and recording land in runs/
   explore-bt check missions/mine.yaml   find every fault of a mission, run nothing
   explore-bt show 01_apartment          draw a mission's behaviour tree
+  explore-bt slam log.clf --out map     make a map from a recorded log
   explore-bt plugins                    list what a mission can use
   explore-bt new-plugin slam my_slam    write a plugin of your own
 
@@ -61,6 +63,7 @@ def start(
 app.command(epilog="Example: explore-bt run 01_apartment --set stride=1.2 --seed 3 --headless")(run)
 app.command(epilog="Example: explore-bt check missions/mine.yaml --set clearance='0.30 m'")(check)
 app.command(epilog="Example: explore-bt show 01_apartment --dot | dot -Tsvg -o tree.svg")(show)
+app.command(epilog="Example: explore-bt slam intel.clf.bz2 --out runs/intel --odometry")(slam)
 app.command(epilog="Example: explore-bt schema --out missions/schema.json")(schema)
 app.command(epilog="Example: explore-bt plugins --kind planner --options")(plugins)
 app.command("new-plugin", epilog="Example: explore-bt new-plugin slam my_slam")(new_plugin)

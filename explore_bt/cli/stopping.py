@@ -14,18 +14,20 @@ if TYPE_CHECKING:
 
 __all__ = ["stopping_by_signal"]
 
-_FIRST = b"\nstopping: the robot brakes, then the results are saved\n"
 _AGAIN = b"\nstill stopping; Ctrl-\\ ends the program at once and loses what is not saved yet\n"
 _NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
 
 
 @contextmanager
-def stopping_by_signal(stop: StopFlag) -> Iterator[None]:
-    """While inside, the two signals raise ``stop`` instead of ending the program."""
+def stopping_by_signal(
+    stop: StopFlag, *, then: str = "the robot brakes, then the results are saved"
+) -> Iterator[None]:
+    """While inside, the two signals raise ``stop`` instead of ending the program, and say what comes then."""
+    first = f"\nstopping: {then}\n".encode()
 
     def on_signal(number: int, _frame: FrameType | None) -> None:
         # os.write: print is not safe in a handler, the interrupted code may be printing
-        os.write(2, _AGAIN if stop.is_raised else _FIRST)
+        os.write(2, _AGAIN if stop.is_raised else first)
         stop.raise_flag(f"stopped by hand ({_NAMES[signal.Signals(number)]})")
 
     before = {number: signal.signal(number, on_signal) for number in _NAMES}

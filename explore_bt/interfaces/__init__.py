@@ -4,6 +4,7 @@ from explore_bt.interfaces.controller import Controller, ControlOutput, ControlS
 from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.exporter import Exporter, RobotProduct
 from explore_bt.interfaces.planner import Planner, never
+from explore_bt.interfaces.playback import Playback, Recorded
 from explore_bt.interfaces.plugin import API_VERSION, Plugin, PluginOptions, RobotContext
 from explore_bt.interfaces.services import MapView, Pilot, RobotServices
 from explore_bt.interfaces.sink import Sink
@@ -25,8 +26,10 @@ __all__ = [
     "NodeState",
     "Pilot",
     "Planner",
+    "Playback",
     "Plugin",
     "PluginOptions",
+    "Recorded",
     "RobotContext",
     "RobotProduct",
     "RobotServices",

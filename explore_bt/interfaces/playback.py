@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from explore_bt.types import Measurement
@@ -35,3 +35,8 @@ class Playback(ABC):
     @abstractmethod
     def progress(self) -> float:
         """Share [0, 1] of the log that ``recorded`` has read."""
+
+    @property
+    @abstractmethod
+    def notes(self) -> Sequence[str]:
+        """What had to be assumed about the log so far, one sentence each."""

@@ -108,15 +108,22 @@ def scan_message(time_ns: int, scan: Scan2D, T_map_base: Pose2) -> str:
     """``foxglove.LaserScan`` in the ``map`` frame, ranges to the centimetre.
 
     An invalid return is ``null``; "nothing within range" is ``1e999``, which every JSON reader takes
-    for infinity: the two stay apart, and Foxglove draws neither as a hit.
+    for infinity: the two stay apart, and Foxglove draws neither as a hit. Further members: ``range_min``,
+    ``range_max`` (metres) and ``sweep_s``, from the first beam to the last: what a replay needs.
     """
     angles = scan.angles_rad
     first, last = (float(angles[0]), float(angles[-1])) if len(angles) else (0.0, 0.0)
+    sweep_s = -float(scan.times_s[0]) if len(scan.times_s) else 0.0
     pose = _pose(T_map_base.compose(scan.T_base_sensor))
     return (
         f'{_head(time_ns)}"pose":{pose},"start_angle":{first:.5f},"end_angle":{last:.5f},'
-        f'"ranges":[{_ranges(scan.ranges_m)}],"intensities":[]}}'
+        f'"ranges":[{_ranges(scan.ranges_m)}],"intensities":[],"range_min":{_figure(scan.range_min_m)},'
+        f'"range_max":{_figure(scan.range_max_m)},"sweep_s":{_figure(sweep_s)}}}'
     )
+
+
+def _figure(value: float) -> str:
+    return f"{value:.4f}" if math.isfinite(value) else "null"
 
 
 def grid_message(time_ns: int, grid: OccupancyGrid) -> str | None:

@@ -49,6 +49,9 @@ _SCHEMAS: Mapping[str, _Schema] = {
         end_angle=_NUMBER,
         ranges=_array(_NUMBER),
         intensities=_array(_NUMBER),
+        range_min=_NUMBER,
+        range_max=_NUMBER,
+        sweep_s=_NUMBER,
     ),
     "foxglove.Grid": _object(
         timestamp=_TIME,

@@ -53,9 +53,9 @@ def report_page(history: RunHistory, result: Result) -> str:
         "files": files_section(run.folder),
         "charts": _charts(robots, tracks, history.end_s),
         "slam": slam_section(result),
-        "gate": gate_section(robots),
+        "gate": gate_section(robots) if any(robot.nodes for robot in robots) else "",
         "events": events_section(history),
-        "trees": "".join(nodes_section(robot, several) for robot in robots),
+        "trees": "".join(nodes_section(robot, several) for robot in robots if robot.nodes),
         "result": result_section(result),
     }
     page = _asset("report.html")

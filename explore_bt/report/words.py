@@ -10,6 +10,7 @@ __all__ = ["clock", "duration", "figure", "headline", "length", "outcome_words",
 
 _OUTCOMES = {
     Outcome.EXPLORED: "Explored",
+    Outcome.MAPPED: "Mapped",
     Outcome.STOPPED: "Stopped by hand",
     Outcome.BUDGET: "Budget used up",
     Outcome.FAILED: "Failed",

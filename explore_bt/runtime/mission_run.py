@@ -10,9 +10,10 @@ from pathlib import Path
 
 from explore_bt.errors import UserError
 from explore_bt.files import write_whole
-from explore_bt.interfaces import Exporter, RobotProduct, RunInfo, Sink
+from explore_bt.interfaces import RobotProduct, RunInfo, Sink
 from explore_bt.mission import Mission
 from explore_bt.plugin import Registry
+from explore_bt.runtime.exports import export
 from explore_bt.runtime.observers import Observers
 from explore_bt.runtime.robot import Robot
 from explore_bt.runtime.runner import Runner
@@ -136,12 +137,7 @@ def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Pa
         product = RobotProduct(
             robot.name, robot.slam.grid(), robot.trajectory(), robot.scores.true_trajectory(), result
         )
-        for name in registry.names("exporter"):
-            make: type[Exporter] = registry.get("exporter", name)
-            try:
-                make(make.Options()).export(product, folder)
-            except Exception:  # one format that cannot be written must not cost the others
-                _log.exception("exporter %s wrote nothing", name)
+        export(registry, product, folder)
         try:
             robot.slam.save(folder / SAVED_MAP)
         except Exception:  # nor may a state that cannot be saved

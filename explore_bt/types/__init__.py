@@ -9,7 +9,7 @@ from explore_bt.types.measurement import Imu, Measurement, PointCloud, Scan2D, W
 from explore_bt.types.motion import MotionLimits, MotionState
 from explore_bt.types.path import Path, Waypoint
 from explore_bt.types.pose import Pose2, Twist2, wrap_angle
-from explore_bt.types.result import Outcome, Result, Score
+from explore_bt.types.result import MappingResult, Outcome, Result, Score
 
 __all__ = [
     "FREE",
@@ -19,6 +19,7 @@ __all__ = [
     "GridWindow",
     "Health",
     "Imu",
+    "MappingResult",
     "Measurement",
     "MotionLimits",
     "MotionState",

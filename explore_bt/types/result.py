@@ -5,13 +5,14 @@ from __future__ import annotations
 import enum
 from dataclasses import asdict, dataclass, field
 
-__all__ = ["Outcome", "Result", "Score"]
+__all__ = ["MappingResult", "Outcome", "Result", "Score"]
 
 
 class Outcome(enum.StrEnum):
-    """Why a mission ended."""
+    """Why a mission ended; ``MAPPED``: a recorded log has come to its end."""
 
     EXPLORED = "explored"
+    MAPPED = "mapped"
     STOPPED = "stopped"
     BUDGET = "budget"
     FAILED = "failed"
@@ -71,3 +72,28 @@ class Result:
     def as_dict(self) -> dict[str, object]:
         """Plain values, ready for JSON."""
         return asdict(self)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MappingResult(Result):
+    """The content of ``result.json`` where the measurements came from a log: what only a robot has is None.
+
+    Attributes:
+        log: the file.
+        relations: error over verified relations (Kümmerle et al. 2009), None without any.
+        scans, loop_closures: how many.
+        ms_per_scan_median, ms_per_scan_p99: computing time of SLAM, wall clock.
+        peak_memory_mb: most memory that the process ever held.
+        health: ``{"t", "state", "reason"}`` of every change of SLAM's trust in itself; t in mission time.
+        notes: what had to be assumed about the log, one sentence each.
+    """
+
+    log: str
+    relations: dict[str, float] | None
+    scans: int
+    loop_closures: int
+    ms_per_scan_median: float
+    ms_per_scan_p99: float
+    peak_memory_mb: float
+    health: tuple[dict[str, object], ...]
+    notes: tuple[str, ...] = ()

@@ -41,8 +41,8 @@ class CarmenLog(MeasurementLog):
 
     A ``FLASER`` line does not say where the laser looks nor how far: beam i points to
     ``-fov / 2 + i · step``, counter-clockwise, with ``step`` = fov over the number of beams (one less where
-    it is odd, as in 181 or 361). The laser is taken to sit in ``base_link``: the line's first pose is the laser's in some logs and
-    one corrected by a SLAM in others. A ``ROBOTLASER1`` line says all of it.
+    it is odd, as in 181 or 361). The laser is taken to sit in ``base_link``: the line's first pose is the
+    laser's in some logs and one corrected by a SLAM in others. A ``ROBOTLASER1`` line says all of it.
 
     Args:
         path: the file.

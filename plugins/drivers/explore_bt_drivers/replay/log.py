@@ -21,12 +21,14 @@ class MeasurementLog(ABC):
         path: the file.
         held: what has come so far, by kind and frame: ``{"Scan2D laser": 120}``.
         passed_over: messages so far that no measurement type exists for, by their name.
+        notes: what had to be assumed, one sentence each.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.held: Counter[str] = Counter()
         self.passed_over: Counter[str] = Counter()
+        self.notes: list[str] = []
 
     def __iter__(self) -> Iterator[Measurement]:
         """All measurements.

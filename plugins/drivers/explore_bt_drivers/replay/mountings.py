@@ -1,0 +1,87 @@
+"""Where sensors sit on the robot, from the static transforms of a bag."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Mountings", "planar", "rotation_of"]
+
+_BASES = ("base_link", "base_footprint", "base")
+
+
+class Mountings:
+    """The tree of static frames.
+
+    Args:
+        notes: takes one sentence for each frame whose place on the robot nobody told.
+    """
+
+    def __init__(self, notes: list[str]) -> None:
+        self._notes = notes
+        self._parents: dict[str, tuple[str, NDArray[np.float64]]] = {}
+        self._known: dict[str, NDArray[np.float64]] = {}
+
+    def learn(self, message: Any) -> None:
+        """Take in a ``tf2_msgs/TFMessage``."""
+        for each in message.transforms:
+            transform = np.eye(4)
+            transform[:3, :3] = rotation_of(each.transform.rotation)
+            shift = each.transform.translation
+            transform[:3, 3] = shift.x, shift.y, shift.z
+            self._parents[_plain(each.child_frame_id)] = (_plain(each.header.frame_id), transform)
+
+    def of(self, frame: str) -> NDArray[np.float64]:
+        """(4, 4) float64 ``T_base_sensor``; the identity where nothing ties the frame to the robot."""
+        name = _plain(frame)
+        if name not in self._known:
+            found = self._chain(name)
+            if found is None:
+                self._notes.append(
+                    f'nothing tells where frame "{frame}" is on the robot: taken for base_link'
+                )
+            self._known[name] = np.eye(4) if found is None else found
+        return self._known[name]
+
+    def _chain(self, frame: str) -> NDArray[np.float64] | None:
+        transform, passed = np.eye(4), {frame}
+        while frame not in _BASES:
+            if frame not in self._parents:
+                return None
+            frame, step = self._parents[frame]
+            if frame in passed:
+                return None
+            passed.add(frame)
+            transform = step @ transform
+        return transform
+
+
+def rotation_of(quaternion: Any) -> NDArray[np.float64]:
+    """(3, 3) float64 of a ``geometry_msgs/Quaternion``.
+
+    Raises:
+        ValueError: it has no length, or is not finite.
+    """
+    q = np.array([quaternion.w, quaternion.x, quaternion.y, quaternion.z], dtype=np.float64)
+    length = float(np.linalg.norm(q)) if np.isfinite(q).all() else 0.0
+    if not 1e-6 < length < 1e6:
+        raise ValueError(f"{q.tolist()} (w, x, y, z) is no rotation; expected a unit quaternion")
+    w, x, y, z = q / length
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def planar(rotation: NDArray[np.float64]) -> float:
+    """Heading of a (3, 3) rotation's x axis in the plane, radians."""
+    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+
+
+def _plain(frame: str) -> str:
+    return frame.lstrip("/")
