@@ -75,9 +75,8 @@ class CarmenLine:
         """``skipped`` more words follow, and nothing behind them."""
         found = len(self._words) - self._next
         if found != skipped:
-            raise self.fault(
-                f"{found} words follow where {skipped} were expected ({what})", cut=found < skipped
-            )
+            message = f"words left on the line: {found}; expected {skipped} ({what})"
+            raise self.fault(message, cut=found < skipped)
 
     def fault(self, message: str, *, cut: bool = False) -> LogError:
         """An error that names this line.

@@ -1,0 +1,164 @@
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from explore_bt_drivers import Replay, ReplayOptions, Sim2d, Sim2dOptions
+from explore_bt_drivers.replay import open_log
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from explore_bt.errors import LogCutOff, LogError, UserError
+from explore_bt.interfaces import RobotContext, RobotSnapshot, RunInfo, TickSnapshot
+from explore_bt.recording import McapRecorder
+from explore_bt.testing.driver_contract import DriverContract
+from explore_bt.types import Estimate, MotionState, OccupancyGrid, Pose2, Scan2D, Score, Twist2, WheelOdometry
+
+WORLD = Path(__file__).parents[2] / "missions" / "worlds" / "room.yaml"
+MOUNTING = Pose2(0.1, 0.0, 0.2)
+
+
+def carmen_log(folder: Path, stamps: list[float]) -> Path:
+    path = folder / "drive.clf"
+    path.write_text(
+        "".join(f"FLASER 3 1 2 {1 + i / 100} 0 0 0 {i / 10} 0 0 {s} host 0\n" for i, s in enumerate(stamps))
+    )
+    return path
+
+
+def replay(path: Path, **options: object) -> Replay:
+    return Replay(ReplayOptions.model_validate({"log": path, **options}))
+
+
+class TestReplay(DriverContract):
+    """Of a log of ten seconds whose stamps go back now and then."""
+
+    def make(self, tmp_path: Path) -> Replay:
+        stamps = [round(100.0 + 0.1 * i - (0.35 if i % 7 == 0 else 0.0), 3) for i in range(100)]
+        return replay(carmen_log(tmp_path, stamps))
+
+
+def test_the_log_is_played_in_mission_time_and_then_there_is_silence(tmp_path):
+    driver = replay(carmen_log(tmp_path, [100.0, 101.0, 103.0]))
+    driver.setup(RobotContext())
+    assert [one.stamp_s for one in driver.read()] == [0.0, 0.0]
+    driver.clock.wait_until(2.0)
+    driver.command(Twist2(0.5, 0.0))
+    driver.stop()
+    assert [one.stamp_s for one in driver.read()] == [1.0, 1.0]
+    driver.clock.wait_until(50.0)
+    assert [one.stamp_s for one in driver.read()] == [3.0, 3.0]
+    assert (driver.clock.now_s(), driver.read(), driver.progress) == (50.0, [], 1.0)
+
+
+def test_recorded_is_the_whole_log_with_its_own_stamps(tmp_path):
+    stamps = [100.0, 100.2, 100.1, 100.4]
+    found = list(replay(carmen_log(tmp_path, stamps)).recorded())
+    assert [one.log_stamp_s for one in found[::2]] == stamps
+    assert all(isinstance(one.measurement, WheelOdometry) for one in found[::2])
+    assert all(isinstance(one.measurement, Scan2D) for one in found[1::2])
+    assert all(a.measurement.stamp_s <= b.measurement.stamp_s for a, b in pairwise(found))
+
+
+def test_a_log_that_cannot_be_read_is_told_at_set_up(tmp_path):
+    with pytest.raises(LogError, match=r"none\.clf: cannot be read"):
+        replay(tmp_path / "none.clf").setup(RobotContext())
+
+
+def test_what_is_wrong_further_on_is_told_when_it_comes(tmp_path):
+    path = carmen_log(tmp_path, [1.0, 2.0])
+    path.write_text(path.read_text() + "FLASER x\n")
+    driver = replay(path)
+    driver.setup(RobotContext())
+    driver.clock.wait_until(5.0)
+    with pytest.raises(LogError, match=r"drive\.clf:3: FLASER"):
+        driver.read()
+
+
+def test_a_database_is_sent_to_its_folder(tmp_path):
+    path = tmp_path / "bag_0.db3"
+    path.write_bytes(b"SQLite format 3\x00" + bytes(100))
+    with pytest.raises(LogError, match=r"part of a ROS 2 bag, give the bag's folder"):
+        open_log(ReplayOptions(log=path))
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory) -> tuple[Path, list[Scan2D]]:
+    """A drive of sim2d, recorded, and the scans that were shown to the recorder."""
+    folder = tmp_path_factory.mktemp("recording")
+    driver = Sim2d(Sim2dOptions.model_validate({"world": WORLD}))
+    driver.setup(RobotContext())
+    recorder = McapRecorder(McapRecorder.Options())
+    recorder.open(RunInfo("room", "", "", 0, "1", folder, {"anna": ()}, {"anna": 0.25}))
+    grid = OccupancyGrid(np.full((4, 4), -1, dtype=np.int8), 0.05, (0.0, 0.0))
+    shown = []
+    for tick in range(60):
+        driver.command(Twist2(0.2, 0.3))
+        driver.clock.wait_until(0.1 * (tick + 1))
+        scan = next((one for one in driver.read() if isinstance(one, Scan2D)), None)
+        if scan is not None:
+            scan = Scan2D(
+                scan.stamp_s, scan.angles_rad, scan.ranges_m, scan.times_s, 0.05, 5.0, T_base_sensor=MOUNTING
+            )
+            shown.append(scan)
+        snapshot = RobotSnapshot(
+            robot="anna",
+            estimate=Estimate(0.1 * tick, driver.truth().pose()),
+            grid=grid,
+            scan=scan,
+            path=None,
+            motion=MotionState(),
+            gate_reason="",
+            nodes=(),
+            blackboard={},
+            score=Score(),
+        )
+        recorder.on_tick(TickSnapshot(tick, 0.1 * (tick + 1), (snapshot,)))
+    recorder.close(None)
+    return folder / "recording.mcap", shown
+
+
+def test_a_recording_gives_back_its_scans(recording):
+    path, shown = recording
+    found = [one for one in open_log(ReplayOptions(log=path)) if isinstance(one, Scan2D)]
+    assert len(found) == 12  # two a second
+    by_stamp = {round(scan.stamp_s, 6): scan for scan in shown}
+    for scan in found:
+        true = by_stamp[round(scan.stamp_s, 6)]
+        np.testing.assert_array_equal(np.isnan(scan.ranges_m), np.isnan(true.ranges_m))
+        np.testing.assert_array_equal(np.isinf(scan.ranges_m), np.isinf(true.ranges_m))
+        np.testing.assert_allclose(scan.ranges_m, true.ranges_m, atol=0.00501)
+        np.testing.assert_allclose(scan.angles_rad, true.angles_rad, atol=1e-4)
+        np.testing.assert_allclose(scan.times_s, true.times_s, atol=1e-4)
+        np.testing.assert_allclose(scan.T_base_sensor.as_array(), MOUNTING.as_array(), atol=3e-4)
+        assert (scan.range_min_m, scan.range_max_m) == (0.05, 5.0)
+
+
+def test_a_robot_that_is_not_in_the_recording_is_told(recording):
+    with pytest.raises(LogError, match='there is no robot "bob" in it; robots are anna'):
+        list(open_log(ReplayOptions(log=recording[0], robot="bob")))
+
+
+def test_a_cut_recording_is_told_after_its_whole_chunks(recording, tmp_path):
+    cut, found = tmp_path / "recording.mcap", []
+    cut.write_bytes(recording[0].read_bytes()[: recording[0].stat().st_size // 2])
+    with pytest.raises(LogCutOff, match="cut off: ends at"):
+        found.extend(open_log(ReplayOptions(log=cut)))
+    assert found
+
+
+@settings(deadline=None, max_examples=60)
+@given(place=st.floats(0.0, 0.999), new=st.binary(min_size=1, max_size=8), cut=st.booleans())
+def test_a_mutated_recording_is_read_or_is_a_user_error(recording, tmp_path_factory, place, new, cut):
+    content = recording[0].read_bytes()
+    at = int(place * len(content))
+    path = tmp_path_factory.mktemp("fuzz") / "recording.mcap"
+    path.write_bytes(content[:at] + new + (b"" if cut else content[at + len(new) :]))
+    found, told = 0, ""
+    try:
+        found = sum(1 for _ in open_log(ReplayOptions(log=path)))
+    except UserError as fault:
+        told = str(fault)
+    assert found or told.startswith(str(path))
