@@ -15,7 +15,7 @@ from mcap.exceptions import McapError
 from mcap.records import Channel, Chunk, Header, Message
 from mcap.stream_reader import StreamReader, breakup_chunk
 
-from explore_bt.errors import UserError
+from explore_bt.errors import LogError
 from explore_bt.recording.topics import PROFILE
 
 __all__ = ["RecordedMessage", "Recording", "RecordingError", "read_recording"]
@@ -24,7 +24,7 @@ _MAGIC = b"\x89MCAP0\r\n"
 _BROKEN = (McapError, struct.error, zstandard.ZstdError, ValueError, EOFError, zlib.error)
 
 
-class RecordingError(UserError):
+class RecordingError(LogError):
     """A file that is not a recording of ours, or holds not even its first chunk."""
 
 

@@ -7,6 +7,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from explore_bt.errors import LogError
 from explore_bt.types import Measurement
 from explore_bt_drivers.replay.bag_messages import MESSAGES, TRANSFORMS
@@ -49,7 +51,7 @@ class BagLog(MeasurementLog):
             mountings = Mountings(self.notes)
             for connection, _, data in self._raw(bag, _of_type(bag.connections, TRANSFORMS)):
                 if connection.topic.endswith("tf_static"):
-                    mountings.learn(self._message(bag, connection, data))
+                    self._learn(mountings, connection, self._message(bag, connection, data))
             for connection, _, data in self._raw(bag, ()):
                 self._read_messages += 1
                 if connection.topic not in played:
@@ -125,9 +127,16 @@ class BagLog(MeasurementLog):
         except Exception as fault:  # the same
             raise self._fault(connection, _words(fault)) from None
 
+    def _learn(self, mountings: Mountings, connection: Any, message: Any) -> None:
+        try:
+            mountings.learn(message)
+        except ValueError as fault:
+            raise LogError(f"{self.path}: a message on {connection.topic}: {fault}") from None
+
     def _measurement(self, connection: Any, message: Any, mountings: Mountings) -> Measurement:
         try:
-            return MESSAGES[connection.msgtype](message, mountings, self._range_max_m)
+            with np.errstate(all="ignore"):  # what overflows in a damaged message is infinite afterwards
+                return MESSAGES[connection.msgtype](message, mountings, self._range_max_m)
         except ValueError as fault:
             raise self._fault(connection, str(fault)) from None
 

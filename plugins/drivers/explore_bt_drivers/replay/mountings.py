@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 __all__ = ["Mountings", "planar", "rotation_of"]
 
+_FARTHEST_M = 1e6
 _BASES = ("base_link", "base_footprint", "base")
 
 
@@ -25,12 +26,18 @@ class Mountings:
         self._known: dict[str, NDArray[np.float64]] = {}
 
     def learn(self, message: Any) -> None:
-        """Take in a ``tf2_msgs/TFMessage``."""
+        """Take in a ``tf2_msgs/TFMessage``.
+
+        Raises:
+            ValueError: a transform that is none.
+        """
         for each in message.transforms:
             transform = np.eye(4)
             transform[:3, :3] = rotation_of(each.transform.rotation)
             shift = each.transform.translation
             transform[:3, 3] = shift.x, shift.y, shift.z
+            if not (np.abs(transform[:3, 3]) < _FARTHEST_M).all():
+                raise ValueError(f"the translation to {each.child_frame_id} is {transform[:3, 3].tolist()} m")
             self._parents[_plain(each.child_frame_id)] = (_plain(each.header.frame_id), transform)
 
     def of(self, frame: str) -> NDArray[np.float64]:
@@ -65,8 +72,8 @@ def rotation_of(quaternion: Any) -> NDArray[np.float64]:
         ValueError: it has no length, or is not finite.
     """
     q = np.array([quaternion.w, quaternion.x, quaternion.y, quaternion.z], dtype=np.float64)
-    length = float(np.linalg.norm(q)) if np.isfinite(q).all() else 0.0
-    if not 1e-6 < length < 1e6:
+    length = float(np.linalg.norm(q)) if (np.abs(q) < 1e6).all() else 0.0
+    if not length > 1e-6:
         raise ValueError(f"{q.tolist()} (w, x, y, z) is no rotation; expected a unit quaternion")
     w, x, y, z = q / length
     return np.array(

@@ -71,7 +71,8 @@ class RecordingLog(MeasurementLog):
 
     def _understood(self, message: RecordedMessage, index: int, read: Any) -> Any:
         try:
-            return read(message.value)
+            with np.errstate(all="ignore"):  # what overflows in a damaged message is infinite afterwards
+                return read(message.value)
         except (KeyError, TypeError, ValueError, OverflowError) as fault:
             raise LogError(
                 f"{self.path}: message on {message.topic} at {message.stamp_s:.3f} s (scan {index}) is not "
