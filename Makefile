@@ -21,7 +21,7 @@ docs: .venv/dev.done       ## the tests that keep the documentation true
 	@$(BIN)/python -m pytest -q tests/docs tests/cli/test_docs.py
 
 bench: .venv/dev.done      ## the tables of docs/benchmarks.md (the whole takes about half an hour)
-	@$(BIN)/python benchmarks/sim2d.py && $(BIN)/python benchmarks/apartment.py && $(BIN)/python benchmarks/floorplans.py
+	@$(BIN)/python benchmarks/sim2d.py && $(BIN)/python benchmarks/apartment.py && $(BIN)/python benchmarks/floorplans.py && $(BIN)/python benchmarks/slam.py
 
 clean:                     ## forget the environment and what was built
 	rm -rf .venv dist build
