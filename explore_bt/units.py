@@ -37,6 +37,7 @@ __all__ = [
     "Area",
     "Dimension",
     "Duration",
+    "FileOrFolderPath",
     "FilePath",
     "Frequency",
     "Jerk",
@@ -193,15 +194,27 @@ PoseTriple = Annotated[
 
 
 def _resolve_file(value: object, info: ValidationInfo) -> Path:
+    path, must_exist = _resolve_path(value, info)
+    if must_exist and not path.is_file():
+        raise ValueError(f"there is no file {path}")
+    return path
+
+
+def _resolve_file_or_folder(value: object, info: ValidationInfo) -> Path:
+    path, must_exist = _resolve_path(value, info)
+    if must_exist and not path.exists():
+        raise ValueError(f"there is no file or folder {path}")
+    return path
+
+
+def _resolve_path(value: object, info: ValidationInfo) -> tuple[Path, bool]:
     if not isinstance(value, str | Path) or not str(value):
         raise ValueError(f"{value} is not a file name")
     context = info.context or {}
     base = context.get("base_dir")
     path = Path(value).expanduser()
     path = path if path.is_absolute() or base is None else Path(base) / path
-    if context.get("must_exist") and not path.is_file():
-        raise ValueError(f"there is no file {path}")
-    return path
+    return path, bool(context.get("must_exist"))
 
 
 FilePath = Annotated[
@@ -211,3 +224,10 @@ FilePath = Annotated[
 ]
 """A file; a relative one is looked up in the folder given as ``base_dir`` in the validation context,
 and has to be there where that context says ``must_exist``."""
+
+FileOrFolderPath = Annotated[
+    Path,
+    PlainValidator(_resolve_file_or_folder),
+    WithJsonSchema({"type": "string", "description": "a file or folder, relative to the mission's folder"}),
+]
+"""The same, and a folder will do: some formats are folders."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from explore_bt.cli.guard import Crash
 from explore_bt.cli.stopping import stopping_by_signal
-from explore_bt.errors import UserError
+from explore_bt.errors import LogError, UserError
 from explore_bt.evaluation import Relation, relation_errors
 from explore_bt.interfaces import Driver, Playback, RobotContext, Slam
 from explore_bt.plugin import Registry
@@ -123,9 +123,7 @@ def _result(job: MappingJob, mapping: Mapping, stop: StopFlag, began_s: float) -
         version=__version__,
         slam=figures,
         log=str(job.log),
-        relations=relation_errors(mapping.in_log_time(way), job.relations).as_dict()
-        if job.relations
-        else None,
+        relations=_relations(job, mapping.in_log_time(way), outcome),
         scans=mapping.scans,
         loop_closures=int(figures.get("loop_closures", 0)),
         ms_per_scan_median=mapping.percentile_ms(50.0),
@@ -137,6 +135,18 @@ def _result(job: MappingJob, mapping: Mapping, stop: StopFlag, began_s: float) -
         ),
         notes=tuple(job.driver.notes),
     )
+
+
+def _relations(job: MappingJob, way: Trajectory, outcome: Outcome) -> dict[str, float] | None:
+    """The error over the relations; a map that was broken off may not have come to any of them yet."""
+    if not job.relations:
+        return None
+    try:
+        return relation_errors(way, job.relations).as_dict()
+    except LogError:
+        if outcome is Outcome.MAPPED:
+            raise
+        return None
 
 
 def _outcome(mapping: Mapping, stop: StopFlag) -> tuple[Outcome, str]:

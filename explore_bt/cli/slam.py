@@ -11,7 +11,7 @@ from explore_bt.cli.guard import DONE, FAILED, STOPPED, guarded
 from explore_bt.cli.human import count, duration
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
-from explore_bt.errors import PluginError
+from explore_bt.errors import LogError, PluginError
 
 if TYPE_CHECKING:
     from explore_bt.cli.mapping_job import MappingJob
@@ -80,6 +80,8 @@ def _prepare(
     driver_class: type[PlaybackDriver] = registry.get("driver", "replay")
     if odometry and "use_odometry" not in slam_class.Options.model_fields:
         raise PluginError(f"--odometry: slam {name} has no option use_odometry; it cannot hear the wheels")
+    if not log.exists():
+        raise LogError(f"{log}: there is no such log; give a log file or the folder of a ROS 2 bag")
     heard = {"use_odometry": True} if odometry else {}
     options = options_from_settings(slam_class.Options, name, "--set", settings, heard)
     driver = driver_class(

@@ -131,6 +131,18 @@ def test_ctrl_c_saves_what_has_been_mapped_and_ends_with_130(folder):
     assert signal.getsignal(signal.SIGINT) is before
 
 
+def test_ctrl_c_before_the_first_scan_saves_an_empty_map(folder):
+    at_set_up = INTERRUPT.replace("def update(self, measurement):", "def setup(self, measurement):").replace(
+        "super().update(measurement)", "super().setup(measurement)"
+    )
+    (folder / INLINE_FILE).write_text(
+        textwrap.dedent(at_set_up.replace("self.seen += isinstance(measurement, Scan2D)", "self.seen = 5"))
+    )
+    shown = slam("hall.clf", "--out", "out", "--slam", "interrupted", "--relations", "hall.relations")
+    assert shown.exit_code == 130, shown.output
+    assert (figures(folder)["scans"], figures(folder)["relations"]) == (0, None)
+
+
 def test_a_log_that_is_cut_off_is_mapped_so_far_and_ends_with_1(folder):
     text = (folder / "hall.clf").read_text()
     (folder / "hall.clf").write_text(text[: len(text) // 2])
@@ -145,7 +157,7 @@ def test_a_log_that_is_cut_off_is_mapped_so_far_and_ends_with_1(folder):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["none.clf"], "none.clf: cannot be read (no such file or directory); give a log file"),
+        (["none.clf"], "none.clf: there is no such log; give a log file or the folder of a ROS 2 bag"),
         (["hall.clf", "--slam", "kis_gtsam"], 'no slam is called "kis_gtsam"; did you mean "kiss_gtsam"?'),
         (["hall.clf", "--set", "voxl=0.1"], '--set voxl=0.1  kiss_gtsam has no option "voxl"'),
         (["hall.clf", "--set", "voxel=-1 m"], "--set voxel=-1 m  voxel: "),
@@ -166,6 +178,13 @@ def test_wrong_input_is_told_with_2_and_nothing_is_written(folder, arguments, me
     assert message in shown.stderr
     assert "Traceback" not in shown.stderr
     assert not (folder / "out").exists()
+
+
+def test_a_folder_is_taken_for_a_bag(folder):
+    (folder / "bag").mkdir()
+    shown = slam("bag", "--out", "out")
+    assert shown.exit_code == 2
+    assert "bag: a folder without metadata.yaml; expected a ROS 2 bag" in shown.stderr
 
 
 def test_help_teaches():

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from explore_bt.interfaces import PluginOptions
 from explore_bt.types import MotionLimits
-from explore_bt.units import Angle, AngularRate, FilePath, Length, Speed
+from explore_bt.units import Angle, AngularRate, FileOrFolderPath, Length, Speed
 
 __all__ = ["ReplayOptions"]
 
@@ -16,7 +16,7 @@ __all__ = ["ReplayOptions"]
 class ReplayOptions(PluginOptions):
     """Which log, and what the log itself does not say."""
 
-    log: FilePath = Field(
+    log: FileOrFolderPath = Field(
         description="CARMEN log (also .gz, .bz2), recording.mcap, ROS 1 bag, ROS 2 bag folder"
     )
     radius: Length = Field(0.25, ge=0.05, le=2.0, description="radius of the circular footprint")
