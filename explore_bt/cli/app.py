@@ -23,7 +23,6 @@ explore-bt {__version__}: a robot explores a building it has never seen
   explore-bt run 01_apartment           drive a mission; map, report and recording land in runs/
   explore-bt check missions/mine.yaml   find every fault of a mission, run nothing
   explore-bt show 01_apartment          draw a mission's behaviour tree
-  explore-bt slam log.clf --out map     make a map from a recorded log
   explore-bt plugins                    list what a mission can use
   explore-bt new-plugin slam my_slam    write a plugin of your own
 
