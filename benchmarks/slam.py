@@ -162,7 +162,9 @@ def measure(folder: Path, name: str, method: str) -> Row:
         try:
             return child.submit(_measure, folder, name, method).result()
         except BrokenProcessPool:
-            return Row(name, method, None, None, "not run to its end: it aborts the process")
+            return Row(name, method, None, None, "failed: it ended its process")
+        except Exception as fault:  # a method that fails is a line of the table, not its end
+            return Row(name, method, None, None, f"failed: {' '.join(str(fault).split())[:80]}")
 
 
 def _measure(folder: Path, name: str, method: str) -> Row:

@@ -47,7 +47,7 @@ def slam(
     ] = None,
     verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Show the log of the program.")] = False,
 ) -> None:
-    """Make a map from a recorded log; map, trajectory and report land in a folder.
+    """Make a map from a recorded log, without a robot.
 
     The log is read in file order, as fast as SLAM can take it. With relations, result.json holds the error
     over them (the Freiburg metric, Kuemmerle et al. 2009).
