@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import resource
 import sys
 import time
@@ -24,6 +25,8 @@ from explore_bt.types import MappingResult, Outcome, Trajectory
 from explore_bt.version import __version__
 
 __all__ = ["MappingJob", "run_job"]
+
+_log = logging.getLogger("explore_bt")
 
 _REDRAW_S = 0.1
 
@@ -63,6 +66,8 @@ def run_job(job: MappingJob, folder: Path) -> MappingResult:
                 mapping = map_log(job.driver, job.slam, odometry=job.odometry, stop=stop, on_scan=on_scan)
             result = _result(job, mapping, stop, began_s)
             write_mapping(job.registry, mapping, job.slam, result, folder, radius_m)
+            if mapping.fault is not None:  # only now there is a folder for the log
+                _log.warning("the mapping ended early", exc_info=mapping.fault)
         except UserError:
             raise
         except Exception as fault:

@@ -52,7 +52,8 @@ def slam(
     The log is read in file order, as fast as SLAM can take it. With relations, result.json holds the error
     over them (the Freiburg metric, Kuemmerle et al. 2009).
 
-    Exit code: 0 done, 1 the log is cut off (what came before is saved), 2 wrong input, 130 stopped by hand.
+    Exit code: 0 done, 1 the log is cut off or SLAM failed (what came before is saved), 2 wrong input,
+    130 stopped by hand.
     Ctrl-C ends the mapping and saves what there is.
     """
     from explore_bt.cli.mapping_job import run_job

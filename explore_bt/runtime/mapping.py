@@ -10,13 +10,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from explore_bt.errors import LogCutOff, LogError
+from explore_bt.errors import ComponentFailure, ExploreError, LogCutOff, LogError
 from explore_bt.interfaces import Playback, Slam
 from explore_bt.runtime.stop_flag import StopFlag
-from explore_bt.types import Health, PointCloud, Scan2D, Trajectory, WheelOdometry
+from explore_bt.types import Health, Measurement, PointCloud, Scan2D, Trajectory, WheelOdometry
 
 __all__ = ["HealthChange", "Mapping", "map_log"]
 
+_LONGEST_REASON = 200
 _NUMBERS = re.compile(r"[\d.]+")
 
 
@@ -38,7 +39,7 @@ class Mapping:
         duration_s: mission time of the last measurement.
         milliseconds: of each scan, in SLAM's ``update``, by the wall's clock.
         health: every change of state, or of the reason apart from the figures in it.
-        damage: empty, or how the log is cut off.
+        damage: empty, or how the log is cut off, or how SLAM failed; ``fault`` is the exception.
     """
 
     scans: int = 0
@@ -47,6 +48,7 @@ class Mapping:
     health: list[HealthChange] = field(default_factory=list)
     held: Counter[str] = field(default_factory=Counter)
     damage: str = ""
+    fault: ExploreError | None = None
     _log_stamps_s: dict[float, float] = field(default_factory=dict)
 
     def in_log_time(self, trajectory: Trajectory) -> Trajectory:
@@ -79,6 +81,7 @@ def map_log(
     Raises:
         LogError: something in the log cannot be understood, or there is not one scan in it. (A log that is
             cut off is no error where scans came before: ``damage`` says so.)
+        ComponentFailure: SLAM raised at the first scan. (Later on ``damage`` says so.)
     """
     mapping = Mapping()
     try:
@@ -91,21 +94,29 @@ def map_log(
             if isinstance(measurement, Scan2D | PointCloud):
                 mapping._log_stamps_s[measurement.stamp_s] = recorded.log_stamp_s
                 begun_s = time.perf_counter()
-                slam.update(measurement)
+                _update(slam, measurement)
                 mapping.milliseconds.append(1000.0 * (time.perf_counter() - begun_s))
                 mapping.scans += 1
                 _note_health(mapping, slam)
                 on_scan(mapping)
             elif odometry or not isinstance(measurement, WheelOdometry):
-                slam.update(measurement)
-    except LogCutOff as cut:
+                _update(slam, measurement)
+    except (LogCutOff, ComponentFailure) as end:
         if not mapping.scans:
             raise
-        mapping.damage = str(cut)
+        mapping.damage, mapping.fault = str(end), end
     if not mapping.scans and not stop.is_raised:
         held = ", ".join(sorted(mapping.held)) or "nothing"
         raise LogError(f"not one scan in the log to make a map of; it holds {held}")
     return mapping
+
+
+def _update(slam: Slam, measurement: Measurement) -> None:
+    try:
+        slam.update(measurement)
+    except Exception as fault:  # whatever a plugin does, what it has mapped so far is kept
+        words = " ".join(f"{type(fault).__name__}: {fault}".split())
+        raise ComponentFailure(f"slam {slam.name}", words[:_LONGEST_REASON]) from fault
 
 
 def _note_health(mapping: Mapping, slam: Slam) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from explore_bt.errors import LogCutOff, LogError
+from explore_bt.errors import ComponentFailure, LogCutOff, LogError
 from explore_bt.interfaces import API_VERSION, Playback, PluginOptions, Recorded, Slam
 from explore_bt.runtime import StopFlag, map_log
 from explore_bt.types import (
@@ -149,6 +149,28 @@ def test_a_raised_flag_ends_it_and_keeps_what_there_is():
 def test_a_cut_log_counts_as_far_as_it_goes():
     mapping = map_log(Tape(scan(0.0), end=LogCutOff("cut")), Listener(), odometry=False, stop=StopFlag())
     assert (mapping.scans, mapping.damage) == (1, "cut")
+
+
+class Stumbling(Listener):
+    """Raises at the third scan."""
+
+    def update(self, measurement):
+        super().update(measurement)
+        if len(self.heard) == 3:
+            raise ValueError("singular\n  matrix")
+
+
+def test_a_slam_that_raises_keeps_what_it_has_mapped():
+    mapping = map_log(Tape(*map(scan, range(5))), Stumbling(), odometry=False, stop=StopFlag())
+    assert (mapping.scans, mapping.damage) == (2, "slam listener: ValueError: singular matrix")
+    assert isinstance(mapping.fault, ComponentFailure)
+
+
+def test_a_slam_that_raises_at_once_is_a_failure_of_that_plugin():
+    slam = Stumbling()
+    slam.heard = [scan(0.0), scan(0.1)]
+    with pytest.raises(ComponentFailure, match="slam listener"):
+        map_log(Tape(scan(0.2)), slam, odometry=False, stop=StopFlag())
 
 
 @pytest.mark.parametrize(
