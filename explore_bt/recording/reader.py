@@ -21,7 +21,16 @@ from explore_bt.recording.topics import PROFILE
 __all__ = ["RecordedMessage", "Recording", "RecordingError", "read_recording"]
 
 _MAGIC = b"\x89MCAP0\r\n"
-_BROKEN = (McapError, struct.error, zstandard.ZstdError, ValueError, EOFError, zlib.error)
+_BROKEN = (
+    McapError,
+    struct.error,
+    zstandard.ZstdError,
+    zlib.error,
+    ValueError,
+    EOFError,
+    OverflowError,  # a damaged length
+    MemoryError,  # the same
+)
 
 
 class RecordingError(LogError):

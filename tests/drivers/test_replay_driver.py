@@ -120,6 +120,11 @@ def recording(tmp_path_factory) -> tuple[Path, list[Scan2D]]:
     return folder / "recording.mcap", shown
 
 
+@pytest.fixture(scope="module")
+def whole_file(recording) -> Path:
+    return recording[0]
+
+
 def test_a_recording_gives_back_its_scans(recording):
     path, shown = recording
     found = [one for one in open_log(ReplayOptions(log=path)) if isinstance(one, Scan2D)]
@@ -151,8 +156,8 @@ def test_a_cut_recording_is_told_after_its_whole_chunks(recording, tmp_path):
 
 @settings(deadline=None, max_examples=60)
 @given(place=st.floats(0.0, 0.999), new=st.binary(min_size=1, max_size=8), cut=st.booleans())
-def test_a_mutated_recording_is_read_or_is_a_user_error(recording, tmp_path_factory, place, new, cut):
-    content = recording[0].read_bytes()
+def test_a_mutated_recording_is_read_or_is_a_user_error(whole_file, tmp_path_factory, place, new, cut):
+    content = whole_file.read_bytes()
     at = int(place * len(content))
     path = tmp_path_factory.mktemp("fuzz") / "recording.mcap"
     path.write_bytes(content[:at] + new + (b"" if cut else content[at + len(new) :]))
