@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import logging
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,10 +22,6 @@ from explore_bt.version import __version__
 
 __all__ = ["run_mission"]
 
-_log = logging.getLogger("explore_bt")
-
-SAVED_MAP = "slam"
-"""Folder of the results with the state of SLAM; a robot with ``map:`` goes on in it."""
 LEFT_OPEN_KEY = "left_open"
 """Blackboard entry in which a tree lists what it could not explore, one sentence each."""
 
@@ -137,8 +132,4 @@ def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Pa
         product = RobotProduct(
             robot.name, robot.slam.grid(), robot.trajectory(), robot.scores.true_trajectory(), result
         )
-        export(registry, product, folder)
-        try:
-            robot.slam.save(folder / SAVED_MAP)
-        except Exception:  # nor may a state that cannot be saved
-            _log.exception("slam %s saved nothing", robot.slam.name)
+        export(registry, product, robot.slam, folder)

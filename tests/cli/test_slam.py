@@ -93,6 +93,7 @@ def test_a_log_becomes_the_files_of_a_mission(folder):
         "map_view.png",
         "report.html",
         "result.json",
+        "slam",
         "trajectory.tum",
     }
     result = figures(folder)
