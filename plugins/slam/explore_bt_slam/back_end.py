@@ -41,6 +41,7 @@ class BackEnd:
         self._finder = ClosureFinder()
         self._closures = 0
         self._covariances = np.zeros((0, 3, 3))
+        self._proposed: list[Edge] = []
 
     @property
     def keyframes(self) -> Sequence[Keyframe]:
@@ -61,6 +62,13 @@ class BackEnd:
     def closures(self) -> int:
         """How many constraints were found by place."""
         return self._closures
+
+    @property
+    def covariances(self) -> NDArray[np.float64]:
+        """(N, 3, 3) float64 of every keyframe relative to the newest, see ``relative_covariances``."""
+        if self._covariances.shape[0] != len(self._keyframes):
+            self._measure(len(self._keyframes) - 1)
+        return self._covariances
 
     def pose(self, keyframe: int) -> Pose2:
         """Where a keyframe is."""
@@ -89,9 +97,12 @@ class BackEnd:
         driven_m = self._keyframes[-1].driven_m + float(np.hypot(relative.x, relative.y))
         self._keep(sweep, driven_m)
         self._measure(newest)
-        if self._loop_closures:
-            self._close_loops(newest)
+        self._close_loops(newest)
         return newest
+
+    def propose(self, closures: Sequence[Edge]) -> None:
+        """Closures found by other means than the lidar's search: the next keyframe brings them in."""
+        self._proposed.extend(closures)
 
     def surroundings(self, keyframe: int) -> tuple[NDArray[np.float64], SurfelMap]:
         """The local map about a keyframe: (N, 2) points in the ``map`` frame, and line pieces."""
@@ -111,8 +122,11 @@ class BackEnd:
         self._closures = sum(edge.is_closure for edge in edges)
 
     def _close_loops(self, newest: int) -> None:
-        found = self._finder.find(self._keyframes, self.poses, self._covariances)
-        taken = self._graph.close(found)
+        proposed, self._proposed = self._proposed, []
+        searched = (
+            self._finder.find(self._keyframes, self.poses, self._covariances) if self._loop_closures else []
+        )
+        taken = self._graph.close([*proposed, *searched])
         if taken:
             self._closures += len(taken)
             self._measure(newest)

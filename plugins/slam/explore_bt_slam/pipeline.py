@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import RobotContext
-from explore_bt.types import Estimate, Imu, Pose2, Scan2D, WheelOdometry
+from explore_bt.types import Estimate, Imu, Pose2, RgbdFrame, Scan2D, WheelOdometry
 from explore_bt_slam.back_end import BackEnd
+from explore_bt_slam.camera_closures import CameraClosures
 from explore_bt_slam.front_end import FrontEnd, Registered
 from explore_bt_slam.health import HealthMonitor
 from explore_bt_slam.journal import Journal
@@ -43,6 +44,7 @@ class Pipeline:
         # a driver may overshoot its limit a little
         self.front = FrontEnd(options, 1.1 * context.limits.speed_mps)
         self.back = BackEnd(options.max_range, options.loop_closures)
+        self.camera = CameraClosures() if options.camera_closures else None
         self.mapper = Mapper(options.resolution, body_radius_m)
         self.journal = Journal()
         self.health = HealthMonitor()
@@ -83,6 +85,13 @@ class Pipeline:
         if self._use_odometry and np.isfinite([odometry.stamp_s, *odometry.T_odom_base.as_array()]).all():
             self.front.take_odometry(odometry)
 
+    def take_image(self, frame: RgbdFrame) -> None:
+        """The first image after each keyframe is remembered, and compared with what looks like it."""
+        if self.camera is None or not self.camera.wants(self._keyframe):
+            return
+        T_keyframe_base, back = self._relative.compose(self.front.motion), self.back
+        back.propose(self.camera.look(frame, T_keyframe_base, back.keyframes, back.poses, back.covariances))
+
     def take_scan(self, scan: Scan2D) -> None:
         """One scan, all the way to the map."""
         problem = fault_of(scan, self._scan_s)
@@ -116,6 +125,7 @@ class Pipeline:
             **pack_edges(self.back.edges),
             **pack_sweeps(self.mapper.kept),
             **self.mapper.arrays(),
+            **(self.camera.arrays() if self.camera else {}),
             "graph_poses": self.back.poses,
             "journal_stamps": stamps,
             "journal_keyframes": keyframes,
@@ -129,6 +139,8 @@ class Pipeline:
         if not poses.shape[0]:
             return
         self.back.restore(unpack_keyframes(arrays), poses, unpack_edges(arrays))
+        if self.camera:
+            self.camera.restore(arrays, poses.shape[0])
         self.mapper.restore(arrays, unpack_sweeps(arrays), poses)
         self.journal.restore(
             arrays["journal_stamps"], arrays["journal_keyframes"], arrays["journal_relatives"]

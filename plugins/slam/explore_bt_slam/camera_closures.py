@@ -1,0 +1,158 @@
+"""Loop closures from the camera: known by appearance, placed by depth, believed only with the lidar."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Pose2, RgbdFrame
+from explore_bt_slam.agreement import Agreement
+from explore_bt_slam.keyframes import Keyframe
+from explore_bt_slam.lidar_verdict import confirm
+from explore_bt_slam.pose_graph import Edge
+from explore_bt_slam.sight import Sight, SightMaker
+from explore_bt_slam.sight_match import match_sights
+from explore_bt_slam.sight_store import SightStore
+
+__all__ = ["CameraClosures", "CameraRule"]
+
+
+@dataclass(frozen=True, slots=True)
+class CameraRule:
+    """What the camera may claim.
+
+    Attributes:
+        driven_m: at least this much way lies between the two keyframes.
+        known_m: a place whose distance the graph knows this well needs no closure.
+        late_s: an image this much newer than the keyframe's scan still belongs to it.
+        votes: fewer like features are no candidate.
+        per_keyframe: at most so many candidates, ``spacing_m`` of way apart.
+        rival: another place with this share of the best one's inliers makes both of them doubtful.
+        rival_m: closures that put the robot this far apart are rivals.
+        gate: χ² of three degrees of freedom for two closures that should say the same.
+        familiar: with this many inliers the place need not be remembered again.
+    """
+
+    driven_m: float = 4.0
+    known_m: float = 0.05
+    late_s: float = 1.0
+    votes: int = 12
+    per_keyframe: int = 3
+    spacing_m: float = 1.0
+    rival: float = 0.6
+    rival_m: float = 0.5
+    gate: float = 16.3
+    familiar: int = 60
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Claim:
+    edge: Edge
+    inliers: int
+
+
+class CameraClosures:
+    """One sight a keyframe; each new one is compared with the places that look like it.
+
+    A closure is proposed when depth, heights and lidar all agree, no other place claims the same view, and
+    a closure of another keyframe says the same about the drift.
+    """
+
+    def __init__(self, rule: CameraRule | None = None) -> None:
+        self._rule = rule or CameraRule()
+        self._maker = SightMaker()
+        self._store = SightStore()
+        self._seen_from = -1
+        self._agreement = Agreement(self._rule.gate)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """What the camera remembers, for a file."""
+        return self._store.arrays()
+
+    def restore(self, arrays: Mapping[str, NDArray[Any]], keyframes: int) -> None:
+        """Remember what a saved map of so many keyframes looked like."""
+        self._store.restore(arrays)
+        self._seen_from = keyframes - 1
+
+    def wants(self, keyframe: int) -> bool:
+        """Whether an image of this keyframe would be new."""
+        return keyframe > self._seen_from
+
+    def look(
+        self,
+        frame: RgbdFrame,
+        T_keyframe_base: Pose2,
+        keyframes: Sequence[Keyframe],
+        poses: NDArray[np.float64],
+        covariances: NDArray[np.float64],
+    ) -> list[Edge]:
+        """Remember what the newest keyframe looks like; the closures that this confirms.
+
+        Args:
+            frame: taken shortly after the newest keyframe's scan.
+            T_keyframe_base: where the robot was then, seen from that keyframe.
+            keyframes: all of them.
+            poses: (N, 3) float64, theirs, ``map`` frame.
+            covariances: (N, 3, 3) float64 relative to the newest, see ``relative_covariances``.
+        """
+        newest = len(keyframes) - 1
+        self._seen_from = newest
+        if not 0.0 <= frame.stamp_s - keyframes[newest].stamp_s <= self._rule.late_s:
+            return []
+        sight = self._maker.sight(frame, T_keyframe_base)
+        claim = self._best_claim(sight, keyframes, poses, covariances)
+        edges = self._agreement.of(claim.edge, poses, covariances) if claim else []
+        if not (edges and claim and claim.inliers >= self._rule.familiar):
+            self._store.add(newest, sight)
+        return edges
+
+    def _best_claim(
+        self,
+        sight: Sight,
+        keyframes: Sequence[Keyframe],
+        poses: NDArray[np.float64],
+        covariances: NDArray[np.float64],
+    ) -> _Claim | None:
+        """The place that the lidar confirms, unless it confirms two."""
+        claims: list[_Claim] = []
+        for number in self._candidates(sight, keyframes, covariances):
+            match = match_sights(self._store.sights[number], sight)
+            if match is None:
+                continue
+            edge = confirm(keyframes, poses, self._store.keyframes[number], match)
+            if edge is not None:
+                claims.append(_Claim(edge, match.inliers))
+        if not claims:
+            return None
+        best = max(claims, key=lambda claim: claim.inliers)
+        return None if any(self._are_rivals(best, other, poses) for other in claims) else best
+
+    def _candidates(
+        self, sight: Sight, keyframes: Sequence[Keyframe], covariances: NDArray[np.float64]
+    ) -> list[int]:
+        """Numbers of remembered sights that look alike, the most alike first, each of another place."""
+        rule, votes = self._rule, self._store.votes(sight)
+        owners = np.array(self._store.keyframes, dtype=np.int64)
+        driven = np.array([keyframes[owner].driven_m for owner in owners])
+        spread = np.sqrt(covariances[owners, 0, 0] + covariances[owners, 1, 1])
+        useful = (keyframes[-1].driven_m - driven >= rule.driven_m) & (spread > rule.known_m)
+        chosen: list[int] = []
+        for number in np.argsort(-votes, kind="stable"):
+            if votes[number] < rule.votes or len(chosen) == rule.per_keyframe:
+                break
+            apart = all(abs(driven[number] - driven[other]) >= rule.spacing_m for other in chosen)
+            if useful[number] and apart:
+                chosen.append(int(number))
+        return chosen
+
+    def _are_rivals(self, best: _Claim, other: _Claim, poses: NDArray[np.float64]) -> bool:
+        """Whether another claim is nearly as good and puts the robot elsewhere."""
+        places = [
+            Pose2(*poses[claim.edge.a].tolist()).compose(claim.edge.relative) for claim in (best, other)
+        ]
+        apart = places[0].distance_to(places[1]) > self._rule.rival_m
+        return apart and other.inliers >= self._rule.rival * best.inliers
