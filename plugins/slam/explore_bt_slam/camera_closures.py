@@ -40,7 +40,7 @@ class CameraRule:
     driven_m: float = 4.0
     known_m: float = 0.05
     late_s: float = 1.0
-    votes: int = 12
+    votes: int = 6
     per_keyframe: int = 3
     spacing_m: float = 1.0
     rival: float = 0.6

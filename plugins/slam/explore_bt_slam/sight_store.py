@@ -14,8 +14,8 @@ from explore_bt_slam.sight import Sight
 
 __all__ = ["SightStore"]
 
-_TABLES = 4
-_BITS = 16
+_TABLES = 6
+_BITS = 14
 _NEAR_BITS = 50
 _LONGEST = 48
 _BIT_CHOICE = np.random.default_rng(0).permutation(256)[: _TABLES * _BITS].reshape(_TABLES, _BITS)
@@ -24,7 +24,7 @@ _BIT_CHOICE = np.random.default_rng(0).permutation(256)[: _TABLES * _BITS].resha
 class SightStore:
     """Sights by keyframe, found again through locality-sensitive hashing.
 
-    Each descriptor is filed under four words of 16 of its 256 bits (bit sampling, Indyk and Motwani 1998;
+    Each descriptor is filed under six words of 14 of its 256 bits (bit sampling, Indyk and Motwani 1998;
     nothing to train); two descriptors that share a word are compared in full. At most 48 entries of a word
     are looked at, the newest first, and at most ``capacity`` sights are kept: when they are full, every
     second one is forgotten. So time and memory are bounded however long the robot drives.
@@ -123,7 +123,7 @@ def _as_words(descriptors: NDArray[np.uint8]) -> NDArray[np.uint64]:
 
 
 def _keys(descriptors: NDArray[np.uint8]) -> NDArray[np.int64]:
-    """(N, 4) int64: the sampled bits of each descriptor, read as one number a table."""
+    """(N, 6) int64: the sampled bits of each descriptor, read as one number a table."""
     bits = np.unpackbits(descriptors, axis=1)
     return np.asarray(bits[:, _BIT_CHOICE].astype(np.int64) @ (1 << np.arange(_BITS, dtype=np.int64)))
 
