@@ -1,12 +1,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from explore_bt_slam import KissGtsam
 from explore_bt_slam.back_end import BackEnd
 from explore_bt_slam.camera_closures import CameraClosures
+from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.pose_graph import Edge
+from explore_bt_slam.sight import Sight, SightMaker
 from explore_bt_slam.sweep import Sweep
 from numpy.typing import NDArray
 
@@ -41,24 +44,38 @@ def lap(count: int, radius_m: float = 1.0) -> list[Pose2]:
     ]
 
 
+class Witness(CameraClosures):
+    """Remembers what was claimed, whatever the graph made of it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.claims: list[Edge] = []
+
+    def find(
+        self,
+        sight: Sight,
+        keyframes: Sequence[Keyframe],
+        poses: NDArray[np.float64],
+        covariances: NDArray[np.float64],
+    ) -> list[Edge]:
+        found = super().find(sight, keyframes, poses, covariances)
+        self.claims += found
+        return found
+
+
 def drive(camera: RoomCamera, poses: list[Pose2], leap_at: int, leap: Pose2) -> tuple[BackEnd, list[Edge]]:
     """A back end without lidar closures that is told ``leap`` too much on the way to one keyframe."""
-    back, finder, proposed = BackEnd(5.0, loop_closures=False), CameraClosures(), []
-    for index, pose in enumerate(poses):
-        stamp_s = float(index)
-        sweep = seen(camera.room, pose, stamp_s)
-        if index == 0:
-            back.begin(sweep, pose)
-        else:
-            relative = poses[index - 1].between(pose)
-            leaps = index == leap_at
-            covariance = np.diag(LEAP_SIGMAS if leaps else STEP_SIGMAS) ** 2
-            back.extend(sweep, index - 1, relative.compose(leap) if leaps else relative, covariance)
-        frame = camera.frame(stamp_s, pose)
-        edges = finder.look(frame, Pose2.identity(), back.keyframes, back.poses, back.covariances)
-        back.propose(edges)
-        proposed += edges
-    return back, proposed
+    back, witness, maker = BackEnd(5.0, loop_closures=False), Witness(), SightMaker()
+    back.looks = witness
+    back.begin(seen(camera.room, poses[0], 0.0), poses[0])
+    for index, pose in enumerate(poses[1:], start=1):
+        relative = poses[index - 1].between(pose)
+        leaps = index == leap_at
+        covariance = np.diag(LEAP_SIGMAS if leaps else STEP_SIGMAS) ** 2
+        sight = maker.sight(camera.frame(float(index), pose), Pose2.identity())
+        relative = relative.compose(leap) if leaps else relative
+        back.extend(seen(camera.room, pose, float(index)), index - 1, relative, covariance, sight)
+    return back, witness.claims
 
 
 def off(back: BackEnd, poses: list[Pose2]) -> NDArray[np.float64]:

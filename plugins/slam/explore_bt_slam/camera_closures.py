@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.types import Pose2, RgbdFrame
+from explore_bt.types import Pose2
 from explore_bt_slam.agreement import Agreement
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.lidar_verdict import confirm
 from explore_bt_slam.pose_graph import Edge
-from explore_bt_slam.sight import Sight, SightMaker
+from explore_bt_slam.sight import Sight
 from explore_bt_slam.sight_match import match_sights
 from explore_bt_slam.sight_store import SightStore
 
@@ -28,24 +29,29 @@ class CameraRule:
     Attributes:
         driven_m: at least this much way lies between the two keyframes.
         known_m: a place whose distance the graph knows this well needs no closure.
-        late_s: an image this much newer than the keyframe's scan still belongs to it.
         votes: fewer like features are no candidate.
         per_keyframe: at most so many candidates, ``spacing_m`` of way apart.
         rival: another place with this share of the best one's inliers makes both of them doubtful.
         rival_m: closures that put the robot this far apart are rivals.
         gate: χ² of three degrees of freedom for two closures that should say the same.
+        same_view_m, same_view_rad: two views from places this close should match.
+        together_m: keyframes with less way between them lie rightly to each other.
+        rich: a view with fewer features contradicts nothing.
         familiar: with this many inliers the place need not be remembered again.
     """
 
     driven_m: float = 4.0
     known_m: float = 0.05
-    late_s: float = 1.0
     votes: int = 6
     per_keyframe: int = 3
     spacing_m: float = 1.0
     rival: float = 0.6
     rival_m: float = 0.5
     gate: float = 16.3
+    same_view_m: float = 0.3
+    same_view_rad: float = 0.25
+    together_m: float = 3.0
+    rich: int = 60
     familiar: int = 60
 
 
@@ -64,28 +70,20 @@ class CameraClosures:
 
     def __init__(self, rule: CameraRule | None = None) -> None:
         self._rule = rule or CameraRule()
-        self._maker = SightMaker()
         self._store = SightStore()
-        self._seen_from = -1
         self._agreement = Agreement(self._rule.gate)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """What the camera remembers, for a file."""
         return self._store.arrays()
 
-    def restore(self, arrays: Mapping[str, NDArray[Any]], keyframes: int) -> None:
-        """Remember what a saved map of so many keyframes looked like."""
+    def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Remember what a saved map looked like."""
         self._store.restore(arrays)
-        self._seen_from = keyframes - 1
 
-    def wants(self, keyframe: int) -> bool:
-        """Whether an image of this keyframe would be new."""
-        return keyframe > self._seen_from
-
-    def look(
+    def find(
         self,
-        frame: RgbdFrame,
-        T_keyframe_base: Pose2,
+        sight: Sight,
         keyframes: Sequence[Keyframe],
         poses: NDArray[np.float64],
         covariances: NDArray[np.float64],
@@ -93,22 +91,52 @@ class CameraClosures:
         """Remember what the newest keyframe looks like; the closures that this confirms.
 
         Args:
-            frame: taken shortly after the newest keyframe's scan.
-            T_keyframe_base: where the robot was then, seen from that keyframe.
+            sight: what was seen from the newest keyframe.
             keyframes: all of them.
             poses: (N, 3) float64, theirs, ``map`` frame.
             covariances: (N, 3, 3) float64 relative to the newest, see ``relative_covariances``.
         """
-        newest = len(keyframes) - 1
-        self._seen_from = newest
-        if not 0.0 <= frame.stamp_s - keyframes[newest].stamp_s <= self._rule.late_s:
-            return []
-        sight = self._maker.sight(frame, T_keyframe_base)
         claim = self._best_claim(sight, keyframes, poses, covariances)
         edges = self._agreement.of(claim.edge, poses, covariances) if claim else []
         if not (edges and claim and claim.inliers >= self._rule.familiar):
-            self._store.add(newest, sight)
+            self._store.add(len(keyframes) - 1, sight)
         return edges
+
+    def contradict(
+        self,
+        sight: Sight,
+        closures: Sequence[Edge],
+        keyframes: Sequence[Keyframe],
+        poses: NDArray[np.float64],
+    ) -> bool:
+        """Whether a closure puts the newest keyframe where all looks different: rooms of one shape.
+
+        Only a view from nearly the same place is compared, and only if both views are rich.
+        """
+        return any(
+            self._looks_different(sight, edge, keyframes, poses)
+            for edge in closures
+            if edge.b == len(keyframes) - 1
+        )
+
+    def _looks_different(
+        self, sight: Sight, edge: Edge, keyframes: Sequence[Keyframe], poses: NDArray[np.float64]
+    ) -> bool:
+        rule, claimed = self._rule, Pose2(*poses[edge.a].tolist()).compose(edge.relative)
+        best, nearest_m = -1, rule.same_view_m
+        for number, owner in enumerate(self._store.keyframes):
+            off = Pose2(*poses[owner].tolist()).between(claimed)
+            is_near = math.hypot(off.x, off.y) <= nearest_m and abs(off.yaw_rad) <= rule.same_view_rad
+            together = abs(keyframes[owner].driven_m - keyframes[edge.a].driven_m) <= rule.together_m
+            if is_near and together and self._store.sights[number].points.shape[0] >= rule.rich:
+                best, nearest_m = number, math.hypot(off.x, off.y)
+        if best < 0 or sight.points.shape[0] < rule.rich:
+            return False
+        match = match_sights(self._store.sights[best], sight)
+        if match is None:
+            return True
+        seen = Pose2(*poses[self._store.keyframes[best]].tolist()).compose(match.relative)
+        return seen.distance_to(claimed) > rule.rival_m
 
     def _best_claim(
         self,

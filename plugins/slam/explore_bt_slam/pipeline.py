@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Estimate, Imu, Pose2, RgbdFrame, Scan2D, WheelOdometry
 from explore_bt_slam.back_end import BackEnd
-from explore_bt_slam.camera_closures import CameraClosures
+from explore_bt_slam.camera import Camera
 from explore_bt_slam.front_end import FrontEnd, Registered
 from explore_bt_slam.health import HealthMonitor
 from explore_bt_slam.journal import Journal
@@ -43,8 +43,8 @@ class Pipeline:
         start, body_radius_m = context.start or Pose2.identity(), context.footprint_radius_m
         # a driver may overshoot its limit a little
         self.front = FrontEnd(options, 1.1 * context.limits.speed_mps)
+        self.camera = Camera() if options.camera_closures else None
         self.back = BackEnd(options.max_range, options.loop_closures)
-        self.camera = CameraClosures() if options.camera_closures else None
         self.mapper = Mapper(options.resolution, body_radius_m)
         self.journal = Journal()
         self.health = HealthMonitor()
@@ -86,11 +86,9 @@ class Pipeline:
             self.front.take_odometry(odometry)
 
     def take_image(self, frame: RgbdFrame) -> None:
-        """The first image after each keyframe is remembered, and compared with what looks like it."""
-        if self.camera is None or not self.camera.wants(self._keyframe):
-            return
-        T_keyframe_base, back = self._relative.compose(self.front.motion), self.back
-        back.propose(self.camera.look(frame, T_keyframe_base, back.keyframes, back.poses, back.covariances))
+        """An image; the next keyframe may want it."""
+        if self.camera is not None and self._keyframe >= 0 and np.isfinite(frame.stamp_s):
+            self.camera.take(frame, self._relative.compose(self.front.motion))
 
     def take_scan(self, scan: Scan2D) -> None:
         """One scan, all the way to the map."""
@@ -125,7 +123,7 @@ class Pipeline:
             **pack_edges(self.back.edges),
             **pack_sweeps(self.mapper.kept),
             **self.mapper.arrays(),
-            **(self.camera.arrays() if self.camera else {}),
+            **self.back.looks.arrays(),
             "graph_poses": self.back.poses,
             "journal_stamps": stamps,
             "journal_keyframes": keyframes,
@@ -139,8 +137,7 @@ class Pipeline:
         if not poses.shape[0]:
             return
         self.back.restore(unpack_keyframes(arrays), poses, unpack_edges(arrays))
-        if self.camera:
-            self.camera.restore(arrays, poses.shape[0])
+        self.back.looks.restore(arrays)
         self.mapper.restore(arrays, unpack_sweeps(arrays), poses)
         self.journal.restore(
             arrays["journal_stamps"], arrays["journal_keyframes"], arrays["journal_relatives"]
@@ -165,7 +162,10 @@ class Pipeline:
         # of them it has grown to n σ and not to √n σ, so the n-th one adds (2 n − 1) σ²
         self._weak_keyframes = self._weak_keyframes + 1 if registered.weakness else 0
         covariance = registered.covariance * max(2 * self._weak_keyframes - 1, 1)
-        self._keyframe = self.back.extend(registered.sweep, self._keyframe, self._relative, covariance)
+        sweep, sight = registered.sweep, None
+        if self.camera is not None:
+            sight = self.camera.sight(sweep.stamp_s, self._relative)
+        self._keyframe = self.back.extend(sweep, self._keyframe, self._relative, covariance, sight)
         self._relative = Pose2.identity()
         self.front.relocate(*self.back.surroundings(self._keyframe))
         self.mapper.follow(self.back.poses)
