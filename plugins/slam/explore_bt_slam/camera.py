@@ -21,6 +21,10 @@ class Camera:
         """An image, taken at ``T_keyframe_base`` from the present keyframe."""
         self._newest = (frame, T_keyframe_base)
 
+    def first(self, frame: RgbdFrame, T_keyframe_base: Pose2) -> Sight:
+        """The features of the first image of all: its keyframe was made before it came."""
+        return self._maker.sight(frame, T_keyframe_base)
+
     def sight(self, stamp_s: float, T_keyframe_new: Pose2) -> Sight | None:
         """What the keyframe made at ``stamp_s``, at ``T_keyframe_new`` from the last one, looks like.
 

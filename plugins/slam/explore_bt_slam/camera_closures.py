@@ -48,7 +48,7 @@ class CameraRule:
     rival: float = 0.6
     rival_m: float = 0.5
     gate: float = 16.3
-    same_view_m: float = 0.3
+    same_view_m: float = 0.35
     same_view_rad: float = 0.25
     together_m: float = 3.0
     rich: int = 60
@@ -81,6 +81,15 @@ class CameraClosures:
         """Remember what a saved map looked like."""
         self._store.restore(arrays)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether no place is remembered yet."""
+        return not self._store.sights
+
+    def remember(self, keyframe: int, sight: Sight) -> None:
+        """What a keyframe looks like, without asking what else looks like that."""
+        self._store.add(keyframe, sight)
+
     def find(
         self,
         sight: Sight,
@@ -99,7 +108,7 @@ class CameraClosures:
         claim = self._best_claim(sight, keyframes, poses, covariances)
         edges = self._agreement.of(claim.edge, poses, covariances) if claim else []
         if not (edges and claim and claim.inliers >= self._rule.familiar):
-            self._store.add(len(keyframes) - 1, sight)
+            self.remember(len(keyframes) - 1, sight)
         return edges
 
     def contradict(

@@ -87,8 +87,13 @@ class Pipeline:
 
     def take_image(self, frame: RgbdFrame) -> None:
         """An image; the next keyframe may want it."""
-        if self.camera is not None and self._keyframe >= 0 and np.isfinite(frame.stamp_s):
-            self.camera.take(frame, self._relative.compose(self.front.motion))
+        if self.camera is None or self._keyframe < 0 or not np.isfinite(frame.stamp_s):
+            return
+        T_keyframe_base = self._relative.compose(self.front.motion)
+        if self.back.looks.is_empty:
+            self.back.looks.remember(self._keyframe, self.camera.first(frame, T_keyframe_base))
+        else:
+            self.camera.take(frame, T_keyframe_base)
 
     def take_scan(self, scan: Scan2D) -> None:
         """One scan, all the way to the map."""
