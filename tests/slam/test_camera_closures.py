@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from explore_bt_slam import KissGtsam
@@ -170,3 +171,63 @@ def test_without_a_camera_all_is_as_before() -> None:
 
 def test_images_are_not_looked_at_where_a_mission_does_not_want_them() -> None:
     assert np.array_equal(circled(True, camera_closures=False), circled(False))
+
+
+def niches() -> Room:
+    """A corridor with the same niche every 1.2 m."""
+    walls = [[-1.0, 0.0, 31.0, 0.0], [-1.0, 1.6, 31.0, 1.6], [-1.0, 0.0, -1.0, 1.6], [31.0, 0.0, 31.0, 1.6]]
+    for k in range(25):
+        x = 1.2 * k
+        walls += [[x, 0.0, x, 0.3], [x, 0.3, x + 0.4, 0.3], [x + 0.4, 0.3, x + 0.4, 0.0]]
+        walls += [[x, 1.6, x, 1.4], [x, 1.4, x + 0.4, 1.4], [x + 0.4, 1.4, x + 0.4, 1.6]]
+    return Room(np.array(walls), np.zeros((0, 3)))
+
+
+def test_a_lidar_closure_with_the_wrong_one_of_many_niches_is_contradicted() -> None:
+    camera, maker, looks = textured(niches()), SightMaker(), CameraClosures()
+    old = [Pose2(8.0 + 0.5 * k, 0.9, 0.0) for k in range(5)]
+    now = Pose2(8.6, 0.92, 0.02)
+    keyframes = [
+        Keyframe(float(k), np.zeros((0, 2)), np.zeros((0, 2)), 0.5 * k if k < 5 else 60.0) for k in range(6)
+    ]
+    poses = np.array([pose.as_array() for pose in [*old, now]])
+    for number, pose in enumerate(old):
+        looks.remember(number, maker.sight(camera.frame(float(number), pose), Pose2.identity()))
+    sight = maker.sight(camera.frame(9.0, now), Pose2.identity())
+    for shift_m, wrong in ((0.0, False), (1.2, True), (-0.6, True)):
+        claimed = old[1].between(Pose2(now.x + shift_m, now.y, now.yaw_rad))
+        closure = Edge(1, 5, claimed, np.eye(3) * 1e-4, is_closure=True)
+        assert looks.contradict(sight, [closure], keyframes, poses) is wrong
+    nothing = Sight(sight.descriptors[:20], sight.points[:20], sight.sigmas_m[:20])
+    assert not looks.contradict(nothing, [closure], keyframes, poses)
+
+
+def test_places_of_a_saved_map_are_known_by_sight() -> None:
+    poses, camera = lap(18), textured(Room.furnished())
+    first, _ = drive(camera, poses[:12], 99, Pose2.identity())
+    second, maker = BackEnd(5.0, loop_closures=False), SightMaker()
+    second.restore(list(first.keyframes), first.poses, list(first.edges))
+    second.looks.restore(first.looks.arrays())
+    for index in range(12, 18):
+        relative = poses[index - 1].between(poses[index])
+        relative = relative.compose(Pose2(1.5, -1.0, 0.25)) if index == 12 else relative
+        covariance = np.diag(LEAP_SIGMAS if index == 12 else STEP_SIGMAS) ** 2
+        sight = maker.sight(camera.frame(float(index), poses[index]), Pose2.identity())
+        sweep = seen(camera.room, poses[index], float(index))
+        second.extend(sweep, index - 1, relative, covariance, sight)
+    assert second.closures >= 2
+    assert off(second, poses).max() < 0.05
+
+
+def test_what_the_camera_remembers_is_saved_and_loaded(tmp_path: Path) -> None:
+    robot = ScriptedRobot(Room.furnished(), Pose2(0.0, -1.0, 0.0))
+    first, second = ready(robot), ready(robot)
+    for measurement in filmed(robot, textured(robot.room), robot.drive(0.5, 0.5, 4.0)):
+        first.update(measurement)
+    first.save(tmp_path / "first")
+    second.load(tmp_path / "first")
+    second.save(tmp_path / "second")
+    with np.load(tmp_path / "first/slam.npz") as one, np.load(tmp_path / "second/slam.npz") as other:
+        assert one["sight_keyframes"].tolist() == [0, 1, 2, 3]
+        for name in ("keyframes", "counts", "descriptors", "points", "sigmas"):
+            assert np.array_equal(one[f"sight_{name}"], other[f"sight_{name}"])
