@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -132,20 +131,26 @@ class CameraClosures:
         self, sight: Sight, edge: Edge, keyframes: Sequence[Keyframe], poses: NDArray[np.float64]
     ) -> bool:
         rule, claimed = self._rule, Pose2(*poses[edge.a].tolist()).compose(edge.relative)
-        best, nearest_m = -1, rule.same_view_m
-        for number, owner in enumerate(self._store.keyframes):
-            off = Pose2(*poses[owner].tolist()).between(claimed)
-            is_near = math.hypot(off.x, off.y) <= nearest_m and abs(off.yaw_rad) <= rule.same_view_rad
-            together = abs(keyframes[owner].driven_m - keyframes[edge.a].driven_m) <= rule.together_m
-            if is_near and together and self._store.sights[number].points.shape[0] >= rule.rich:
-                best, nearest_m = number, math.hypot(off.x, off.y)
-        if best < 0 or sight.points.shape[0] < rule.rich:
+        best = self._view_from(claimed, keyframes[edge.a].driven_m, keyframes, poses)
+        if best is None or min(self._store.sights[best].points.shape[0], sight.points.shape[0]) < rule.rich:
             return False
         match = match_sights(self._store.sights[best], sight)
         if match is None:
             return True
         seen = Pose2(*poses[self._store.keyframes[best]].tolist()).compose(match.relative)
         return seen.distance_to(claimed) > rule.rival_m
+
+    def _view_from(
+        self, place: Pose2, driven_m: float, keyframes: Sequence[Keyframe], poses: NDArray[np.float64]
+    ) -> int | None:
+        """The number of the remembered sight taken nearest to a place, on the same stretch of way."""
+        rule, owners = self._rule, np.array(self._store.keyframes, dtype=np.int64)
+        driven = np.array([keyframes[owner].driven_m for owner in owners])
+        away = np.hypot(poses[owners, 0] - place.x, poses[owners, 1] - place.y)
+        turned = np.abs((poses[owners, 2] - place.yaw_rad + np.pi) % (2.0 * np.pi) - np.pi)
+        same = (turned <= rule.same_view_rad) & (np.abs(driven - driven_m) <= rule.together_m)
+        away = np.where(same, away, np.inf)
+        return int(np.argmin(away)) if away.min(initial=np.inf) <= rule.same_view_m else None
 
     def _best_claim(
         self,

@@ -30,7 +30,7 @@ class SightStore:
     second one is forgotten. So time and memory are bounded however long the robot drives.
 
     Args:
-        capacity: sights kept at most, about 15 kB each.
+        capacity: sights kept at most, about 23 kB each with the index.
     """
 
     def __init__(self, capacity: int = 2000) -> None:
