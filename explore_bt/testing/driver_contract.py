@@ -27,7 +27,17 @@ import numpy as np
 import pytest
 
 from explore_bt.interfaces import API_VERSION, Driver, Playback, RobotContext
-from explore_bt.types import Imu, Measurement, PointCloud, Pose2, Scan2D, Twist2, WheelOdometry, wrap_angle
+from explore_bt.types import (
+    Imu,
+    Measurement,
+    PointCloud,
+    Pose2,
+    RgbdFrame,
+    Scan2D,
+    Twist2,
+    WheelOdometry,
+    wrap_angle,
+)
 
 __all__ = ["DriverContract"]
 
@@ -332,7 +342,7 @@ def _check_cloud(cloud: PointCloud) -> None:
 
 
 def _noun(measurement: Measurement) -> str:
-    return {Scan2D: "a scan", Imu: "an IMU sample", PointCloud: "a cloud"}.get(
+    return {Scan2D: "a scan", Imu: "an IMU sample", PointCloud: "a cloud", RgbdFrame: "an image"}.get(
         type(measurement), "wheel odometry"
     )
 
@@ -342,4 +352,6 @@ def _fingerprint(measurement: Measurement) -> tuple[object, ...]:
         return ("scan", measurement.stamp_s, measurement.ranges_m.tobytes(), measurement.times_s.tobytes())
     if isinstance(measurement, PointCloud):
         return ("cloud", measurement.stamp_s, measurement.points.tobytes(), measurement.times_s.tobytes())
+    if isinstance(measurement, RgbdFrame):
+        return ("image", measurement.stamp_s, measurement.image.tobytes(), measurement.depth_m.tobytes())
     return (repr(measurement),)

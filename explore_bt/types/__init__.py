@@ -5,7 +5,7 @@ Frames are REP-105's ``map → odom → base_link``, units REP-103's: metres, ra
 
 from explore_bt.types.estimate import Estimate, Health, Trajectory
 from explore_bt.types.grid import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
-from explore_bt.types.measurement import Imu, Measurement, PointCloud, Scan2D, WheelOdometry
+from explore_bt.types.measurement import Imu, Measurement, PointCloud, RgbdFrame, Scan2D, WheelOdometry
 from explore_bt.types.motion import MotionLimits, MotionState
 from explore_bt.types.path import Path, Waypoint
 from explore_bt.types.pose import Pose2, Twist2, wrap_angle
@@ -29,6 +29,7 @@ __all__ = [
     "PointCloud",
     "Pose2",
     "Result",
+    "RgbdFrame",
     "Scan2D",
     "Score",
     "Trajectory",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from explore_bt.types.pose import Pose2
 
-__all__ = ["Imu", "Measurement", "PointCloud", "Scan2D", "WheelOdometry"]
+__all__ = ["Imu", "Measurement", "PointCloud", "RgbdFrame", "Scan2D", "WheelOdometry"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,4 +94,66 @@ class WheelOdometry:
     frame: str = "odom"
 
 
-Measurement: TypeAlias = Scan2D | PointCloud | Imu | WheelOdometry
+@dataclass(frozen=True, slots=True, eq=False)
+class RgbdFrame:
+    """One image of an RGB-D camera, depth registered to colour: pixel by pixel the same ray.
+
+    Attributes:
+        stamp_s: time of exposure, seconds on the mission's clock.
+        image: (H, W) or (H, W, 3) uint8, grey or RGB.
+        depth_m: (H, W) float32, metres **along the optical axis** (z, not the ray's length); NaN is "none".
+        fx, fy, cx, cy: pinhole intrinsics, pixels, of the undistorted image; (0, 0) is the centre of the
+            upper left pixel.
+        T_base_sensor: (4, 4) float64, pose of the optical frame (z ahead, x right, y down: REP-103) in
+            ``base_link``.
+        frame: the optical frame's name.
+
+    Raises:
+        ValueError: a shape, type or intrinsic that does not fit.
+    """
+
+    stamp_s: float
+    image: NDArray[np.uint8]
+    depth_m: NDArray[np.float32]
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    T_base_sensor: NDArray[np.float64]
+    frame: str = "camera_optical"
+
+    def __post_init__(self) -> None:
+        faults = [
+            *_fault(
+                "image", self.image, np.uint8, ((*self.depth_m.shape[:2],), (*self.depth_m.shape[:2], 3))
+            ),
+            *_fault("depth_m", self.depth_m, np.float32, (self.image.shape[:2],)),
+            *_fault("T_base_sensor", self.T_base_sensor, np.float64, ((4, 4),)),
+        ]
+        if not (np.isfinite([self.fx, self.fy, self.cx, self.cy]).all() and min(self.fx, self.fy) > 0.0):
+            faults.append(
+                f"fx, fy, cx, cy are {self.fx}, {self.fy}, {self.cx}, {self.cy}; expected fx, fy > 0"
+            )
+        if faults:
+            raise ValueError(f"RgbdFrame of {self.frame}: {'; '.join(faults)}")
+
+    @property
+    def grey(self) -> NDArray[np.uint8]:
+        """(H, W) uint8: the image without its colour (ITU-R BT.601 luma)."""
+        if self.image.ndim == 2:
+            return self.image
+        weights = np.array([77, 150, 29], dtype=np.uint32)
+        return ((self.image.astype(np.uint32) @ weights + 128) >> 8).astype(np.uint8)
+
+
+Measurement: TypeAlias = Scan2D | PointCloud | Imu | WheelOdometry | RgbdFrame
+
+
+def _fault(
+    name: str, array: NDArray[np.generic], dtype: type[np.generic], shapes: tuple[tuple[int, ...], ...]
+) -> list[str]:
+    """What is wrong with an array, in words; nothing if nothing is."""
+    if array.dtype == dtype and array.shape in shapes:
+        return []
+    wanted = " or ".join(map(str, shapes))
+    return [f"{name} is {array.dtype} of shape {array.shape}; expected {dtype.__name__} of shape {wanted}"]

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
+from explore_bt_slam.camera_closures import CameraClosures
 from explore_bt_slam.closures import ClosureFinder
 from explore_bt_slam.graph_distance import relative_covariances
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.local_map import gather_points, gather_surfels, trusted_neighbours
 from explore_bt_slam.pose_graph import Edge, PoseGraph
+from explore_bt_slam.sight import Sight
 from explore_bt_slam.surfels import SurfelMap, normals_of
 from explore_bt_slam.sweep import Sweep
 
@@ -30,7 +32,10 @@ class BackEnd:
 
     Args:
         reach_m: the lidar's range: how far a keyframe's points can lie from it.
-        loop_closures: whether to look for them.
+        loop_closures: whether to look for them by lidar.
+
+    Attributes:
+        looks: what places look like, and the loops that this closes.
     """
 
     def __init__(self, reach_m: float, loop_closures: bool) -> None:
@@ -41,6 +46,7 @@ class BackEnd:
         self._finder = ClosureFinder()
         self._closures = 0
         self._covariances = np.zeros((0, 3, 3))
+        self.looks = CameraClosures()
 
     @property
     def keyframes(self) -> Sequence[Keyframe]:
@@ -75,7 +81,14 @@ class BackEnd:
         self._graph.begin(pose)
         return self._keep(sweep, 0.0)
 
-    def extend(self, sweep: Sweep, since: int, relative: Pose2, covariance: NDArray[np.float64]) -> int:
+    def extend(
+        self,
+        sweep: Sweep,
+        since: int,
+        relative: Pose2,
+        covariance: NDArray[np.float64],
+        sight: Sight | None = None,
+    ) -> int:
         """A new keyframe at ``relative`` to keyframe ``since``, and the loops that it closes.
 
         Args:
@@ -83,14 +96,14 @@ class BackEnd:
             since: the keyframe that it was reached from.
             relative: ``T_since_new``.
             covariance: (3, 3) float64 of ``relative``, axes of the new keyframe.
+            sight: what the camera saw from it.
         """
         newest = len(self._keyframes)
         self._graph.extend(Edge(since, newest, relative, _bounded(covariance), is_closure=False))
         driven_m = self._keyframes[-1].driven_m + float(np.hypot(relative.x, relative.y))
         self._keep(sweep, driven_m)
         self._measure(newest)
-        if self._loop_closures:
-            self._close_loops(newest)
+        self._close_loops(newest, sight)
         return newest
 
     def surroundings(self, keyframe: int) -> tuple[NDArray[np.float64], SurfelMap]:
@@ -110,8 +123,12 @@ class BackEnd:
         self._graph.restore(poses, edges)
         self._closures = sum(edge.is_closure for edge in edges)
 
-    def _close_loops(self, newest: int) -> None:
-        found = self._finder.find(self._keyframes, self.poses, self._covariances)
+    def _close_loops(self, newest: int, sight: Sight | None) -> None:
+        keyframes, poses, covariances = self._keyframes, self.poses, self._covariances
+        found = self._finder.find(keyframes, poses, covariances) if self._loop_closures else []
+        if sight is not None:
+            found = [] if self.looks.contradict(sight, found, keyframes, poses) else found
+            found += self.looks.find(sight, keyframes, poses, covariances)
         taken = self._graph.close(found)
         if taken:
             self._closures += len(taken)

@@ -17,7 +17,7 @@ from explore_bt_slam.local_map import gather_points, gather_surfels
 from explore_bt_slam.point_to_line import Alignment, align
 from explore_bt_slam.pose_graph import Edge
 
-__all__ = ["ClosureFinder", "ClosureRule"]
+__all__ = ["ClosureFinder", "ClosureRule", "neighbourhood"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +125,7 @@ class ClosureFinder:
         """Search, refine, verify; None where any of it fails."""
         rule, scan = self._rule, keyframes[newest]
         predicted = Pose2(*poses[newest].tolist())
-        chosen = _neighbourhood(keyframes, old)
+        chosen = neighbourhood(keyframes, old)
         guess = predicted
         if window_m > 0.1:
             window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.02, rule.window_max_rad)
@@ -181,7 +181,7 @@ class ClosureFinder:
         return []
 
 
-def _neighbourhood(keyframes: Sequence[Keyframe], old: int) -> list[int]:
+def neighbourhood(keyframes: Sequence[Keyframe], old: int) -> list[int]:
     """The submap about an old keyframe: those driven through within 2 m of way before and after it."""
     driven = keyframes[old].driven_m
     return [

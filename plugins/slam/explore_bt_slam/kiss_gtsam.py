@@ -15,6 +15,7 @@ from explore_bt.types import (
     Measurement,
     OccupancyGrid,
     Pose2,
+    RgbdFrame,
     Scan2D,
     Trajectory,
     WheelOdometry,
@@ -52,6 +53,8 @@ class KissGtsam(Slam):
             self._pipeline.take_imu(measurement)
         elif isinstance(measurement, WheelOdometry):
             self._pipeline.take_odometry(measurement)
+        elif isinstance(measurement, RgbdFrame):
+            self._pipeline.take_image(measurement)
         elif isinstance(measurement, Scan2D):
             begun = time.perf_counter()
             self._pipeline.take_scan(measurement)

@@ -24,4 +24,5 @@ class KissGtsamOptions(GroundTruthOptions):
     keyframe_angle: Angle = Field(0.5, gt=0.0, description="a keyframe after turning this far")
     voxel: Length = Field(0.1, gt=0.0, description="cell of kiss-icp's map")
     loop_closures: bool = Field(True, description="close loops from the lidar")
+    camera_closures: bool = Field(True, description="close loops from RGB-D images, if there are any")
     use_odometry: bool = Field(False, description="trust the wheels for the speed between scans")

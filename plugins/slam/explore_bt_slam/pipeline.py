@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import RobotContext
-from explore_bt.types import Estimate, Imu, Pose2, Scan2D, WheelOdometry
+from explore_bt.types import Estimate, Imu, Pose2, RgbdFrame, Scan2D, WheelOdometry
 from explore_bt_slam.back_end import BackEnd
+from explore_bt_slam.camera import Camera
 from explore_bt_slam.front_end import FrontEnd, Registered
 from explore_bt_slam.health import HealthMonitor
 from explore_bt_slam.journal import Journal
@@ -42,6 +43,7 @@ class Pipeline:
         start, body_radius_m = context.start or Pose2.identity(), context.footprint_radius_m
         # a driver may overshoot its limit a little
         self.front = FrontEnd(options, 1.1 * context.limits.speed_mps)
+        self.camera = Camera() if options.camera_closures else None
         self.back = BackEnd(options.max_range, options.loop_closures)
         self.mapper = Mapper(options.resolution, body_radius_m)
         self.journal = Journal()
@@ -83,6 +85,16 @@ class Pipeline:
         if self._use_odometry and np.isfinite([odometry.stamp_s, *odometry.T_odom_base.as_array()]).all():
             self.front.take_odometry(odometry)
 
+    def take_image(self, frame: RgbdFrame) -> None:
+        """An image; the next keyframe may want it."""
+        if self.camera is None or self._keyframe < 0 or not np.isfinite(frame.stamp_s):
+            return
+        T_keyframe_base = self._relative.compose(self.front.motion)
+        if self.back.looks.is_empty:
+            self.back.looks.remember(self._keyframe, self.camera.first(frame, T_keyframe_base))
+        else:
+            self.camera.take(frame, T_keyframe_base)
+
     def take_scan(self, scan: Scan2D) -> None:
         """One scan, all the way to the map."""
         problem = fault_of(scan, self._scan_s)
@@ -116,6 +128,7 @@ class Pipeline:
             **pack_edges(self.back.edges),
             **pack_sweeps(self.mapper.kept),
             **self.mapper.arrays(),
+            **self.back.looks.arrays(),
             "graph_poses": self.back.poses,
             "journal_stamps": stamps,
             "journal_keyframes": keyframes,
@@ -129,6 +142,7 @@ class Pipeline:
         if not poses.shape[0]:
             return
         self.back.restore(unpack_keyframes(arrays), poses, unpack_edges(arrays))
+        self.back.looks.restore(arrays)
         self.mapper.restore(arrays, unpack_sweeps(arrays), poses)
         self.journal.restore(
             arrays["journal_stamps"], arrays["journal_keyframes"], arrays["journal_relatives"]
@@ -153,7 +167,10 @@ class Pipeline:
         # of them it has grown to n σ and not to √n σ, so the n-th one adds (2 n − 1) σ²
         self._weak_keyframes = self._weak_keyframes + 1 if registered.weakness else 0
         covariance = registered.covariance * max(2 * self._weak_keyframes - 1, 1)
-        self._keyframe = self.back.extend(registered.sweep, self._keyframe, self._relative, covariance)
+        sweep, sight = registered.sweep, None
+        if self.camera is not None:
+            sight = self.camera.sight(sweep.stamp_s, self._relative)
+        self._keyframe = self.back.extend(sweep, self._keyframe, self._relative, covariance, sight)
         self._relative = Pose2.identity()
         self.front.relocate(*self.back.surroundings(self._keyframe))
         self.mapper.follow(self.back.poses)
