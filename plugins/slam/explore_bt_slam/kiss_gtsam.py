@@ -14,11 +14,13 @@ from explore_bt.types import (
     Imu,
     Measurement,
     OccupancyGrid,
+    PointCloud,
     Pose2,
     Scan2D,
     Trajectory,
     WheelOdometry,
 )
+from explore_bt_slam.cloud_pipeline import CloudPipeline
 from explore_bt_slam.options import KissGtsamOptions
 from explore_bt_slam.pipeline import Pipeline
 from explore_bt_slam.storage import read_arrays, write_arrays
@@ -38,11 +40,12 @@ class KissGtsam(Slam):
         super().__init__(options)
         self._settings = KissGtsamOptions.model_validate(options.model_dump())
         self._start: Pose2 | None = None
-        self._pipeline = self._new_pipeline(RobotContext())
+        self._context = RobotContext()
+        self._pipeline = self._new_pipeline(self._context)
 
     def setup(self, context: RobotContext) -> None:
         """Begin at ``context.start``; compiles the kernels on first use (some seconds, then cached)."""
-        self._start = context.start
+        self._start, self._context = context.start, context
         warm_up(self._new_pipeline(context))
         self._pipeline = self._new_pipeline(context)
 
@@ -56,6 +59,8 @@ class KissGtsam(Slam):
             begun = time.perf_counter()
             self._pipeline.take_scan(measurement)
             self._pipeline.journal.took(time.perf_counter() - begun)
+        elif isinstance(measurement, PointCloud):
+            self._take_cloud(measurement)
 
     def estimate(self) -> Estimate:
         """The pose now, carried from the last scan to the last IMU sample by the gyroscope."""
@@ -88,6 +93,16 @@ class KissGtsam(Slam):
     def load(self, folder: Path) -> None:
         """Go on in a saved map, at ``context.start``, or where the saved trajectory ended if None."""
         self._pipeline.restore(read_arrays(folder, self.name, self._settings.resolution), self._start)
+
+    def _take_cloud(self, cloud: PointCloud) -> None:
+        """The first lidar that speaks, planar or 3D, is the one that is listened to."""
+        begun = time.perf_counter()
+        if not isinstance(self._pipeline, CloudPipeline):
+            if self._pipeline.has_begun:
+                return
+            self._pipeline = CloudPipeline(self._settings, self._context)
+        self._pipeline.take_cloud(cloud)
+        self._pipeline.journal.took(time.perf_counter() - begun)
 
     def _new_pipeline(self, context: RobotContext) -> Pipeline:
         return Pipeline(self._settings, context)

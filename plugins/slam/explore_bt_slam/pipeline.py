@@ -62,6 +62,11 @@ class Pipeline:
         return self._scan_pose.compose(self.front.motion)
 
     @property
+    def has_begun(self) -> bool:
+        """Whether a scan has been taken, or a map loaded."""
+        return self._keyframe >= 0
+
+    @property
     def _scan_pose(self) -> Pose2:
         if self._keyframe < 0:
             return self._start
