@@ -66,8 +66,8 @@ class BalancingRobot:
         self._note()
 
     @property
-    def T_base_sensor(self) -> NDArray[np.float64]:
-        """(4, 4) float64: the lidar, straight above ``base_link``."""
+    def mount(self) -> NDArray[np.float64]:
+        """(4, 4) float64 ``T_base_sensor``: the lidar straight above ``base_link``."""
         transform = np.eye(4)
         transform[2, 3] = self.lidar_height_m
         return transform
@@ -149,7 +149,7 @@ class BalancingRobot:
         ranges = ranges + self._rng.normal(0.0, self.range_noise_m, ranges.shape)
         ranges = np.where((ranges > 0.1) & (ranges <= self.range_max_m), ranges, np.nan)
         points = (beams * ranges[:, None]).astype(np.float32)
-        return PointCloud(self.time_s, points, times, self.T_base_sensor)
+        return PointCloud(self.time_s, points, times, self.mount)
 
     def _beams(self) -> NDArray[np.float64]:
         """(N, 3) unit vectors, column by column; rings from -15° to 15°."""

@@ -58,7 +58,9 @@ class Scene3:
         )
         numbers = np.flatnonzero(near)
         return np.asarray(
-            _cast(origins, directions, limit_m, numbers, self._edges, self._starts, self._heights, self._boxes)
+            _cast(
+                origins, directions, limit_m, numbers, self._edges, self._starts, self._heights, self._boxes
+            )
         )
 
 
@@ -82,9 +84,9 @@ def _cast(origins, directions, limit, prisms, edges, starts, heights, boxes):  #
                     best = t
             lid = high if dz < 0.0 else low
             t = (lid - oz) / dz if dz != 0.0 else math.inf
-            if 0.0 < t < best and t <= limit:
-                if _inside(ox + t * dx, oy + t * dy, edges, starts[prism], starts[prism + 1]):
-                    best = t
+            edge = (starts[prism], starts[prism + 1])
+            if 0.0 < t < best and t <= limit and _inside(ox + t * dx, oy + t * dy, edges, *edge):
+                best = t
         ranges[i] = best
     return ranges
 
@@ -93,7 +95,10 @@ def _cast(origins, directions, limit, prisms, edges, starts, heights, boxes):  #
 def _misses_box(ox, oy, dx, dy, limit, boxes, prism):  # type: ignore[no-untyped-def]  # kernel
     """Whether the ray passes by the prism's bounding rectangle, or ends before it."""
     enter, leave = 0.0, limit
-    for o, d, low, high in ((ox, dx, boxes[prism, 0], boxes[prism, 2]), (oy, dy, boxes[prism, 1], boxes[prism, 3])):
+    for o, d, low, high in (
+        (ox, dx, boxes[prism, 0], boxes[prism, 2]),
+        (oy, dy, boxes[prism, 1], boxes[prism, 3]),
+    ):
         if abs(d) < 1e-12:
             if o < low or o > high:
                 return True

@@ -100,7 +100,7 @@ class KissGtsam(Slam):
         if not isinstance(self._pipeline, CloudPipeline):
             if self._pipeline.has_begun:
                 return
-            self._pipeline = CloudPipeline(self._settings, self._context)
+            self._pipeline = CloudPipeline(self._settings, self._context, self._pipeline.mapper.revision)
         self._pipeline.take_cloud(cloud)
         self._pipeline.journal.took(time.perf_counter() - begun)
 

@@ -26,7 +26,8 @@ class KissGtsamOptions(GroundTruthOptions):
     loop_closures: bool = Field(True, description="close loops from the lidar")
     base_height: Length = Field(0.0, description="base_link above the floor; the body pitches about it")
     obstacle_band: tuple[Length, Length] = Field(
-        (0.1, 1.0), description="3D lidar: lower is floor, higher is passed under; second is the robot's height"
+        (0.1, 1.0),
+        description="3D lidar: lower is floor; the second is the robot's height",
     )
     match_band: tuple[Length, Length] = Field(
         (0.3, 2.0), description="3D lidar: heights above the floor that are registered"

@@ -30,8 +30,8 @@ def _nearest(
     points: Singles, stamps: Floats, low: float, high: float, bins: int
 ) -> tuple[Floats, Singles, Floats]:
     width = 2.0 * np.pi / bins
-    angles = (np.arange(bins) + 0.5) * width - np.pi
-    ranges = np.full(bins, np.nan, np.float32)
+    angles = np.linspace(-np.pi, np.pi - width, bins) + 0.5 * width
+    ranges = np.full(bins, np.float32(np.nan), np.float32)
     times = np.zeros(bins)
     for i in range(points.shape[0]):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
