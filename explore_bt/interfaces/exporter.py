@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from explore_bt.interfaces.plugin import Plugin
-from explore_bt.types import OccupancyGrid, Result, Trajectory
+from explore_bt.types import MapStructure, OccupancyGrid, Result, Trajectory
 
 __all__ = ["Exporter", "RobotProduct"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RobotProduct:
-    """What one robot brings home; ``truth`` where the driver knows it."""
+    """What one robot brings home; ``truth`` where the driver knows it, ``structure`` as far as SLAM has one."""
 
     robot: str
     grid: OccupancyGrid
     trajectory: Trajectory
     truth: Trajectory | None
     result: Result
+    structure: MapStructure = field(default_factory=MapStructure)
 
 
 class Exporter(Plugin):

@@ -12,6 +12,7 @@ from explore_bt.types import (
     Estimate,
     GridWindow,
     Imu,
+    MapStructure,
     Measurement,
     OccupancyGrid,
     PointCloud,
@@ -86,13 +87,20 @@ class KissGtsam(Slam):
             "loop_closures": float(self._pipeline.back.closures),
         }
 
+    def structure(self) -> MapStructure:
+        """The pose graph, and the voxels if the lidar is a 3D one."""
+        return self._pipeline.structure()
+
     def save(self, folder: Path) -> None:
         """One file, ``slam.npz``: keyframes, graph, kept sweeps, trajectory."""
         write_arrays(folder, self.name, self._settings.resolution, self._pipeline.arrays())
 
     def load(self, folder: Path) -> None:
         """Go on in a saved map, at ``context.start``, or where the saved trajectory ended if None."""
-        self._pipeline.restore(read_arrays(folder, self.name, self._settings.resolution), self._start)
+        arrays = read_arrays(folder, self.name, self._settings.resolution)
+        if "voxel_pool" in arrays:
+            self._pipeline = self._new_cloud_pipeline()
+        self._pipeline.restore(arrays, self._start)
 
     def _take_cloud(self, cloud: PointCloud) -> None:
         """The first lidar that speaks, planar or 3D, is the one that is listened to."""
@@ -100,9 +108,12 @@ class KissGtsam(Slam):
         if not isinstance(self._pipeline, CloudPipeline):
             if self._pipeline.has_begun:
                 return
-            self._pipeline = CloudPipeline(self._settings, self._context, self._pipeline.mapper.revision)
+            self._pipeline = self._new_cloud_pipeline()
         self._pipeline.take_cloud(cloud)
         self._pipeline.journal.took(time.perf_counter() - begun)
+
+    def _new_cloud_pipeline(self) -> CloudPipeline:
+        return CloudPipeline(self._settings, self._context, self._pipeline.mapper.revision)
 
     def _new_pipeline(self, context: RobotContext) -> Pipeline:
         return Pipeline(self._settings, context)

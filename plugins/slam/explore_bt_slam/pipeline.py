@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import RobotContext
-from explore_bt.types import Estimate, Imu, Pose2, Scan2D, WheelOdometry
+from explore_bt.types import Estimate, Imu, MapStructure, Pose2, Scan2D, WheelOdometry
 from explore_bt_slam.back_end import BackEnd
+from explore_bt_slam.exported_graph import graph_of
 from explore_bt_slam.front_end import FrontEnd, Registered
 from explore_bt_slam.health import HealthMonitor
 from explore_bt_slam.journal import Journal
@@ -112,6 +113,10 @@ class Pipeline:
         health, reason = self.health.state
         stamp_s = max(self.front.time_s, 0.0)
         return Estimate(stamp_s, self.pose, self._spread(), self.mapper.revision, health, reason)
+
+    def structure(self) -> MapStructure:
+        """The pose graph."""
+        return MapStructure(graph=graph_of(self.back.poses, self.back.edges))
 
     def arrays(self) -> Arrays:
         """The whole state."""
