@@ -14,7 +14,7 @@ __all__ = ["Exporter", "RobotProduct"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RobotProduct:
-    """What one robot brings home; ``truth`` where the driver knows it, ``structure`` as far as SLAM has one."""
+    """What one robot brings home; ``truth`` where the driver knows it."""
 
     robot: str
     grid: OccupancyGrid

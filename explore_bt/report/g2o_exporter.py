@@ -28,7 +28,7 @@ class G2oExporter(Exporter):
 
 
 def g2o_text(graph: PoseGraph2) -> str:
-    """``VERTEX_SE2 id x y yaw`` and ``EDGE_SE2 a b dx dy dyaw`` with the upper triangle of the information."""
+    """``VERTEX_SE2 id x y yaw`` and ``EDGE_SE2 a b dx dy dyaw`` with the information's upper triangle."""
     vertices = [
         f"VERTEX_SE2 {k} {x:.9g} {y:.9g} {yaw:.9g}" for k, (x, y, yaw) in enumerate(graph.poses.tolist())
     ]

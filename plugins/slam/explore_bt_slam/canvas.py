@@ -66,7 +66,9 @@ class Canvas:
         high = np.ceil(bounds[2:] / self._cell_m).astype(np.int64)
         self._make_room_for(low, high)
         (col0, row0), (col1, row1) = low - self._corner, high - self._corner
-        changed = painter(self._cells[row0:row1, col0:col1], np.asarray(low * self._cell_m, dtype=np.float64))
+        cells = self._cells[row0:row1, col0:col1].copy()  # one memory layout, so that kernels compile once
+        changed = painter(cells, np.asarray(low * self._cell_m, dtype=np.float64))
+        self._cells[row0:row1, col0:col1] = cells
         self._note(
             GridWindow(changed.row0 + row0, changed.col0 + col0, changed.row1 + row0, changed.col1 + col0)
         )

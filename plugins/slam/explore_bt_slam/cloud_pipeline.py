@@ -76,7 +76,7 @@ class CloudPipeline(Pipeline):
     def _make_keyframe(self, registered: Registered) -> None:
         """Where a keyframe already stands, and surely so, the robot goes on from that one.
 
-        So the graph grows with the area and not with time. The scan sees all round, so headings do not matter.
+        So the graph grows with the area and not with time. A scan sees all round: headings do not matter.
         """
         old = self._stands_here(registered)
         if old is None:

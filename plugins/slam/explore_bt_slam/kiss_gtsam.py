@@ -22,6 +22,7 @@ from explore_bt.types import (
     WheelOdometry,
 )
 from explore_bt_slam.cloud_pipeline import CloudPipeline
+from explore_bt_slam.cloud_warm_up import warm_up_clouds
 from explore_bt_slam.options import KissGtsamOptions
 from explore_bt_slam.pipeline import Pipeline
 from explore_bt_slam.storage import read_arrays, write_arrays
@@ -48,6 +49,7 @@ class KissGtsam(Slam):
         """Begin at ``context.start``; compiles the kernels on first use (some seconds, then cached)."""
         self._start, self._context = context.start, context
         warm_up(self._new_pipeline(context))
+        warm_up_clouds(self._new_cloud_pipeline())
         self._pipeline = self._new_pipeline(context)
 
     def update(self, measurement: Measurement) -> None:
