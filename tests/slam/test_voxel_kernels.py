@@ -41,7 +41,13 @@ def slow_marks(
             a, b = (low - start) / (tip - start), (low + 1 - start) / (tip - start)
         enter = np.maximum(np.minimum(a, b).max(axis=-1), 0.0)
         leave = np.minimum(np.maximum(a, b).min(axis=-1), 1.0)
-        marks[(leave - enter > 1e-9) & ~(low == np.floor(tip)).all(axis=-1)] = 1
+        column = [v for v in struck if v[:2] == tuple(np.floor(tip).astype(int)[[1, 0]])]
+        level = int(np.floor(tip[2]))
+        lone = not any(0 <= v[2] < SHAPE[2] and 0 < abs(v[2] - level) <= 3 for v in column)
+        boxed = all(0 <= i < n for i, n in zip(np.floor(tip)[[1, 0]], SHAPE, strict=False))
+        late = enter >= 1.0 - 0.5 / CELL_M / np.linalg.norm(tip - start)
+        spared = (low[..., 2] == level) & late & (lone and boxed)
+        marks[(leave - enter > 1e-9) & ~(low == np.floor(tip)).all(axis=-1) & ~spared] = 1
     for voxel in struck:
         if all(0 <= i < n for i, n in zip(voxel, SHAPE, strict=True)):
             marks[voxel] = 2
@@ -68,8 +74,9 @@ def test_evidence_is_added_and_clamped_and_never_unknown_again() -> None:
     changes: list[bool] = []
     used = 0
     for sweep in range(40):
-        ends = np.array([[0.85, 0.05, 0.45]] if sweep < 10 else [[1.05, 0.05, 0.45]])
-        scratch, touched = traced(np.array([[0.05, 0.05, 0.45]]), ends, np.zeros(3))
+        away = 0.85 if sweep < 10 else 1.05
+        ends = np.array([[away, 0.05, 0.45], [away, 0.05, 0.55]])
+        scratch, touched = traced(np.array([[0.05, 0.05, 0.45]] * 2), ends, np.zeros(3))
         used = allocate(touched, 4, 4, table, used)
         take_in(scratch, touched, 4, 4, table, pool, dirty)
         assert not scratch.any()

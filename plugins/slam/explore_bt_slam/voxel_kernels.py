@@ -24,6 +24,8 @@ DECISIVE = 9
 _HIT, _MISS = round(10 * HIT), round(10 * MISS)
 _SOLIDEST, _CLEAREST = round(10 * SOLIDEST), round(10 * CLEAREST)
 _PASSED, _STRUCK = 1, 2
+_UPRIGHT_M = 0.3
+_LYING_M = 0.5
 
 Marks: TypeAlias = NDArray[np.uint8]
 
@@ -40,6 +42,10 @@ def trace(
     touched: Bools,
 ) -> None:
     """Mark what one sweep struck and what it looked through; a struck voxel stays struck.
+
+    A return with no other just above or below it lies on something level, a table top or the floor. A flat
+    ray runs along under or over such a surface inside its own voxels before it meets it, and would clear
+    them: so it marks nothing on its last level over its last half metre.
 
     Rays with the same end voxel count once. They are walked after Amanatides and Woo (1987) and stop short
     of their last voxel.
@@ -78,12 +84,28 @@ def trace(
             touched[row, col] = True
         n += 1
     for i in range(n):
-        _walk(starts[i], tips[i], scratch, touched)
+        guarded = _LYING_M / cell if _is_lone(tips[i], scratch, round(_UPRIGHT_M / cell)) else 0.0
+        _walk(starts[i], tips[i], guarded, scratch, touched)
 
 
 @njit(cache=True)
-def _walk(start: Floats, tip: Floats, scratch: Marks, touched: Bools) -> None:
-    """Mark every voxel that a ray enters, but the last; units are voxels."""
+def _is_lone(tip: Floats, scratch: Marks, reach: int) -> bool:
+    """Whether nothing else of the sweep was struck a little above or below."""
+    col, row, level = int(np.floor(tip[0])), int(np.floor(tip[1])), int(np.floor(tip[2]))
+    if not (0 <= row < scratch.shape[0] and 0 <= col < scratch.shape[1]):
+        return False
+    for other in range(max(level - reach, 0), min(level + reach + 1, scratch.shape[2])):
+        if other != level and scratch[row, col, other] == _STRUCK:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _walk(start: Floats, tip: Floats, guarded: float, scratch: Marks, touched: Bools) -> None:
+    """Mark every voxel that a ray enters, but the last; units are voxels.
+
+    On the last one's level none is marked over the last ``guarded`` voxels of the way.
+    """
     rows, cols, levels = scratch.shape
     col, row, level = int(np.floor(start[0])), int(np.floor(start[1])), int(np.floor(start[2]))
     col_end, row_end, level_end = int(np.floor(tip[0])), int(np.floor(tip[1])), int(np.floor(tip[2]))
@@ -95,8 +117,16 @@ def _walk(start: Floats, tip: Floats, scratch: Marks, touched: Bools) -> None:
     per_x = 1.0 / abs(dx) if dx != 0.0 else np.inf
     per_y = 1.0 / abs(dy) if dy != 0.0 else np.inf
     per_z = 1.0 / abs(dz) if dz != 0.0 else np.inf
+    # share of the way after which the level of the end is guarded
+    guard = 1.0 - guarded / max(np.sqrt(dx * dx + dy * dy + dz * dz), 1e-6)
+    entered = 0.0
     for _ in range(abs(col_end - col) + abs(row_end - row) + abs(level_end - level)):
-        inside = 0 <= row < rows and 0 <= col < cols and 0 <= level < levels
+        inside = (
+            (level != level_end or entered < guard)
+            and 0 <= row < rows
+            and 0 <= col < cols
+            and 0 <= level < levels
+        )
         if inside and scratch[row, col, level] == 0:
             scratch[row, col, level] = _PASSED
             touched[row, col] = True
@@ -104,6 +134,7 @@ def _walk(start: Floats, tip: Floats, scratch: Marks, touched: Bools) -> None:
         along_x = next_x if col != col_end else np.inf
         along_y = next_y if row != row_end else np.inf
         along_z = next_z if level != level_end else np.inf
+        entered = min(along_x, along_y, along_z)
         if along_x <= along_y and along_x <= along_z:
             col += step_x
             next_x += per_x
