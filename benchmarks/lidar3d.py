@@ -62,9 +62,9 @@ def run(slam: KissGtsam, robot: BalancingRobot, hours: float) -> Notes:
                 notes.truth[measurement.stamp_s] = robot.pose
                 notes.unwell += slam.estimate().health is not Health.OK
                 spent = 0.0
-        structure = slam.structure().voxels
-        known = 0.0 if structure is None else len(structure.keys) / 1e6
-        notes.memory.append((robot.time_s / 3600.0, resident_mb(), known, slam.figures()["keyframes"]))
+        figures = slam.figures()
+        row = (robot.time_s / 3600.0, resident_mb(), figures["voxel_mb"], figures["keyframes"])
+        notes.memory.append(row)
     return notes
 
 
@@ -91,7 +91,7 @@ def report(slam: KissGtsam, robot: BalancingRobot, notes: Notes) -> None:
     rows = {
         "driven, turned": f"{robot.driven_m:.0f} m, {robot.turned_rad:.0f} rad in {robot.time_s:.0f} s",
         "scans, not ok": f"{len(notes.milliseconds)}, {notes.unwell}",
-        "ATE, rmse and worst, no alignment": f"{100 * np.sqrt(np.mean(off**2)):.1f} cm, {100 * off.max():.1f} cm",
+        "ATE, not aligned": f"rmse {100 * np.sqrt(np.mean(off**2)):.1f} cm, worst {100 * off.max():.1f} cm",
         "CPU per scan, median, p99, worst": f"{median:.1f}, {p99:.1f}, {max(notes.milliseconds):.0f} ms",
         "keyframes, closures": f"{figures['keyframes']:.0f}, {figures['loop_closures']:.0f}",
         "phantom cells": f"{phantoms(grid, world, robot.scene.prisms)} of {np.count_nonzero(grid.occupied)}",
@@ -100,10 +100,10 @@ def report(slam: KissGtsam, robot: BalancingRobot, notes: Notes) -> None:
     print("| | |\n|---|---|")
     for name, value in rows.items():
         print(f"| {name} | {value} |")
-    print("\n| hours | process | known voxels | keyframes |\n|---|---|---|---|")
+    print("\n| hours | process | voxels | keyframes |\n|---|---|---|---|")
     shown = sorted({0, *np.linspace(0, len(notes.memory) - 1, 8).astype(int).tolist()})
-    for hours, process_mb, million, keyframes in (notes.memory[k] for k in shown):
-        print(f"| {hours:.2f} | {process_mb:.0f} MB | {million:.2f} million | {keyframes:.0f} |")
+    for hours, process_mb, voxel_mb, keyframes in (notes.memory[k] for k in shown):
+        print(f"| {hours:.2f} | {process_mb:.0f} MB | {voxel_mb:.1f} MB | {keyframes:.0f} |")
 
 
 def plot(notes: Notes, path: Path) -> None:

@@ -67,6 +67,12 @@ class CloudPipeline(Pipeline):
         else:
             self._attitude.correct(np.zeros(2), self._speed_limit_mps)
 
+    def figures(self) -> dict[str, float]:
+        """Also submaps, and megabytes of voxels."""
+        voxels = self.voxel_mapper.voxels
+        own = {"submaps": float(len(voxels.submaps)), "voxel_mb": voxels.memory_bytes / 1e6}
+        return {**super().figures(), **own}
+
     def structure(self) -> MapStructure:
         """Voxels and pose graph."""
         voxels = self.voxel_mapper.voxels

@@ -82,9 +82,12 @@ class KissGtsam(Slam):
         return self._pipeline.journal.trajectory(self._pipeline.back.poses)
 
     def figures(self) -> Mapping[str, float]:
-        """``scans``, ``keyframes``, ``loop_closures``, ``ms_per_scan_median``, ``ms_per_scan_p99``."""
+        """``scans``, ``keyframes``, ``loop_closures``, ``ms_per_scan_median``, ``ms_per_scan_p99``.
+
+        With a 3D lidar also ``submaps`` and ``voxel_mb``, the memory of their voxels.
+        """
         return {
-            **self._pipeline.journal.figures(),
+            **self._pipeline.figures(),
             "keyframes": float(len(self._pipeline.back.keyframes)),
             "loop_closures": float(self._pipeline.back.closures),
         }

@@ -114,6 +114,10 @@ class Pipeline:
         stamp_s = max(self.front.time_s, 0.0)
         return Estimate(stamp_s, self.pose, self._spread(), self.mapper.revision, health, reason)
 
+    def figures(self) -> dict[str, float]:
+        """Numbers for the report, but those of the graph."""
+        return self.journal.figures()
+
     def structure(self) -> MapStructure:
         """The pose graph."""
         return MapStructure(graph=graph_of(self.back.poses, self.back.edges))
