@@ -5,7 +5,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+import pytest
 from explore_bt_slam import KissGtsam
+from pydantic import ValidationError
 
 from explore_bt.interfaces import RobotContext
 from explore_bt.testing.balancing_robot import BalancingRobot
@@ -72,7 +74,7 @@ def test_rooms_are_mapped_from_a_swinging_body() -> None:
 def test_a_lower_robot_passes_under_the_table() -> None:
     robot = swinging(Pose2(3.0, 0.0, 0.0))
     robot.lidar_height_m = 0.3
-    slam = ready(robot, obstacle_band=["10 cm", "50 cm"], match_band=["0.2 m", "1.5 m"])
+    slam = ready(robot, robot_height="50 cm", match_low="0.2 m", match_high="1.5 m")
     drive(slam, robot.drive(0.0, 0.0, 1.0), robot.go_to(4.5, 0.2), robot.turn(math.pi))
     assert slam.grid().value_at(4.6, 1.4) == FREE
 
@@ -116,6 +118,14 @@ def test_voxels_and_graph_are_handed_out() -> None:
     assert 1.9 < centres[:, 2].max() < 2.0
     near_top = np.abs(centres - [4.6, 1.4, 0.68]).max(axis=1) < 0.1
     assert near_top.any()
+
+
+@pytest.mark.parametrize(
+    "options", [{"floor_height": "1 m"}, {"robot_height": "3 m"}, {"match_low": "0.5 m", "match_high": 0.5}]
+)
+def test_bands_upside_down_are_refused_by_name(options: dict[str, object]) -> None:
+    with pytest.raises(ValidationError, match="has to be the higher one"):
+        KissGtsam.Options(**options)
 
 
 def test_the_first_lidar_that_speaks_is_listened_to() -> None:

@@ -31,7 +31,7 @@ class CloudPipeline(Pipeline):
 
     def __init__(self, options: KissGtsamOptions, context: RobotContext, revision: int = 0) -> None:
         super().__init__(options, context)
-        heights = Heights(*options.obstacle_band, options.map_top)
+        heights = Heights(options.floor_height, options.robot_height, options.map_height)
         self.voxel_mapper = VoxelMapper(
             options.resolution, context.footprint_radius_m, heights, options.max_range, revision
         )
@@ -60,7 +60,7 @@ class CloudPipeline(Pipeline):
         options = self._options
         levelled = level(cloud, self._attitude, options.base_height, options.max_range)
         self._cloud = levelled
-        self.take_scan(virtual_scan(levelled, *options.match_band, options.max_range))
+        self.take_scan(virtual_scan(levelled, options.match_low, options.match_high, options.max_range))
         self._cloud = None
         if self.health.state[0] is Health.OK:
             self._attitude.correct(self.front.velocity_mps, _SPEED_SIGMA_MPS)
