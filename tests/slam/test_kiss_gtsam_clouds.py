@@ -1,18 +1,19 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from explore_bt_slam import KissGtsam
+from explore_bt_slam import KissGtsam, attitude, level_cloud, projection, virtual_scan, voxel_kernels
 from pydantic import ValidationError
 
 from explore_bt.interfaces import RobotContext
 from explore_bt.testing.balancing_robot import BalancingRobot
 from explore_bt.testing.scene3 import Prism, Scene3
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, Measurement, Pose2
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, Measurement, PointCloud, Pose2
 
 
 def box(x0: float, y0: float, x1: float, y1: float, low: float = 0.0, high: float = 2.5) -> Prism:
@@ -135,3 +136,25 @@ def test_the_first_lidar_that_speaks_is_listened_to() -> None:
     grid = slam.grid()
     assert (grid.cells != UNKNOWN).sum() > 1000
     assert slam.figures()["scans"] == 3
+
+
+def test_no_kernel_compiles_while_the_robot_drives() -> None:
+    robot = swinging(Pose2(-1.0, 0.0, 0.0))
+    slam = ready(robot)
+    before = _signatures()
+    assert len(before) >= 10
+    drive(slam, robot.drive(0.0, 0.0, 0.5), robot.go_to(0.5, 0.0))
+    for measurement in robot.drive(0.0, 0.0, 0.2):
+        if isinstance(measurement, PointCloud):
+            measurement.points.flags.writeable = False
+            measurement = dataclasses.replace(measurement, times_s=measurement.times_s.astype(np.float32))
+        slam.update(measurement)
+    slam.structure()
+    assert _signatures() == before
+
+
+def _signatures() -> dict[str, int]:
+    """How many versions of each kernel there are by now."""
+    modules = (attitude, level_cloud, virtual_scan, voxel_kernels, projection)
+    kernels = [getattr(module, name) for module in modules for name in vars(module)]
+    return {f"{k.__module__}.{k.__name__}": len(k.signatures) for k in kernels if hasattr(k, "signatures")}

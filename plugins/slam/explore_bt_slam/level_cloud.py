@@ -65,7 +65,7 @@ def level(cloud: PointCloud, attitude: AttitudeFilter, base_height_m: float, rea
     times, inverse = np.unique(cloud.times_s, return_inverse=True)
     attitudes = attitude.between(cloud.stamp_s + np.append(times, 0.0))
     own, ends, origins, kept = _level(
-        cloud.points,
+        np.array(cloud.points, dtype=np.float32, order="C"),  # whatever the driver's memory is like
         inverse.astype(np.int64),
         attitudes,
         cloud.T_base_sensor.astype(np.float64),
