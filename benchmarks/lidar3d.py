@@ -112,7 +112,12 @@ def plot(notes: Notes, path: Path) -> None:
     axes = figure.subplots()
     table = np.array(notes.memory)
     axes.plot(table[:, 0], table[:, 1])
-    axes.set(xlabel="simulated hours", ylabel="process, MB", ylim=(0.0, None), title="memory over time")
+    axes.set(
+        xlabel="simulated hours",
+        ylabel="process, MB",
+        ylim=(0.0, 1.2 * table[:, 1].max()),
+        title="memory over time",
+    )
     figure.savefig(path, dpi=120)
 
 
