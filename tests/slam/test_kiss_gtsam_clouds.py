@@ -13,7 +13,8 @@ from pydantic import ValidationError
 from explore_bt.interfaces import RobotContext
 from explore_bt.testing.balancing_robot import BalancingRobot
 from explore_bt.testing.scene3 import Prism, Scene3
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, Measurement, PointCloud, Pose2
+from explore_bt.testing.slam_room import Room, ScriptedRobot
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, Imu, Measurement, PointCloud, Pose2
 
 
 def box(x0: float, y0: float, x1: float, y1: float, low: float = 0.0, high: float = 2.5) -> Prism:
@@ -33,7 +34,7 @@ def two_rooms() -> Scene3:
     return Scene3([*walls, *middle, *legs, *things])
 
 
-def ready(robot: BalancingRobot, **options: object) -> KissGtsam:
+def ready(robot: BalancingRobot | ScriptedRobot, **options: object) -> KissGtsam:
     slam = KissGtsam(KissGtsam.Options(**options))
     slam.setup(RobotContext(start=robot.pose, footprint_radius_m=0.2))
     return slam
@@ -130,12 +131,18 @@ def test_bands_upside_down_are_refused_by_name(options: dict[str, object]) -> No
 
 
 def test_the_first_lidar_that_speaks_is_listened_to() -> None:
-    robot = swinging(Pose2(-1.0, 0.0, 0.0))
-    slam = ready(robot)
-    drive(slam, robot.drive(0.0, 0.0, 0.3))
-    grid = slam.grid()
-    assert (grid.cells != UNKNOWN).sum() > 1000
-    assert slam.figures()["scans"] == 3
+    planar = ScriptedRobot(Room.furnished(), Pose2(-1.0, 0.0, 0.0))
+    for first, second in ((swinging(planar.pose), planar), (planar, swinging(planar.pose))):
+        slam = ready(first)
+        drive(slam, first.drive(0.0, 0.0, 0.3))
+        pose, grid = slam.estimate().T_map_base, slam.grid()
+        assert (grid.cells != UNKNOWN).sum() > 1000
+        for measurement in second.drive(0.0, 0.0, 1.0):
+            if not isinstance(measurement, Imu):
+                slam.update(measurement)
+        assert slam.figures()["scans"] == 3
+        assert slam.estimate().T_map_base == pose
+        assert slam.grid() is grid
 
 
 def test_no_kernel_compiles_while_the_robot_drives() -> None:

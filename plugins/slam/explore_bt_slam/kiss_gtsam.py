@@ -58,7 +58,7 @@ class KissGtsam(Slam):
             self._pipeline.take_imu(measurement)
         elif isinstance(measurement, WheelOdometry):
             self._pipeline.take_odometry(measurement)
-        elif isinstance(measurement, Scan2D):
+        elif isinstance(measurement, Scan2D) and not isinstance(self._pipeline, CloudPipeline):
             begun = time.perf_counter()
             self._pipeline.take_scan(measurement)
             self._pipeline.journal.took(time.perf_counter() - begun)
