@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from explore_bt.interfaces.plugin import Plugin
-from explore_bt.types import OccupancyGrid, Result, Trajectory
+from explore_bt.types import MapStructure, OccupancyGrid, Result, Trajectory
 
 __all__ = ["Exporter", "RobotProduct"]
 
@@ -21,6 +21,7 @@ class RobotProduct:
     trajectory: Trajectory
     truth: Trajectory | None
     result: Result
+    structure: MapStructure = field(default_factory=MapStructure)
 
 
 class Exporter(Plugin):

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from explore_bt.interfaces.plugin import Plugin, RobotContext
-from explore_bt.types import Estimate, GridWindow, Measurement, OccupancyGrid, Trajectory
+from explore_bt.types import Estimate, GridWindow, MapStructure, Measurement, OccupancyGrid, Trajectory
 
 __all__ = ["Slam"]
 
@@ -57,6 +57,10 @@ class Slam(Plugin):
     @abstractmethod
     def figures(self) -> Mapping[str, float]:
         """Numbers for the report: ``keyframes``, ``loop_closures``, ``ms_per_scan_median``, ..."""
+
+    def structure(self) -> MapStructure:
+        """Voxels and pose graph for the exporters, called once at the end; nothing unless overridden."""
+        return MapStructure()
 
     @abstractmethod
     def save(self, folder: Path) -> None:

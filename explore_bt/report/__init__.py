@@ -1,14 +1,22 @@
 """What people look at: the report, the map files, the live view in a terminal."""
 
+from explore_bt.report.g2o_exporter import G2oExporter
 from explore_bt.report.live import ProgressLines, TerminalView
 from explore_bt.report.map_server_exporter import MapServerExporter
+from explore_bt.report.octomap_exporter import OctomapExporter
+from explore_bt.report.pcd_exporter import PcdExporter
+from explore_bt.report.ply_exporter import PlyExporter
 from explore_bt.report.report_sink import ReportSink
 from explore_bt.report.tum_exporter import TumExporter
 
 __all__ = [
     "EXPORTERS",
     "SINKS",
+    "G2oExporter",
     "MapServerExporter",
+    "OctomapExporter",
+    "PcdExporter",
+    "PlyExporter",
     "ProgressLines",
     "ReportSink",
     "TerminalView",
@@ -17,5 +25,12 @@ __all__ = [
 
 SINKS = (ReportSink, TerminalView, ProgressLines)
 """The sinks of this package, for the plugin host."""
-EXPORTERS = (MapServerExporter, TumExporter)
+EXPORTERS = (
+    MapServerExporter,
+    TumExporter,
+    PlyExporter,
+    PcdExporter,
+    OctomapExporter,
+    G2oExporter,
+)
 """The exporters of this package, for the plugin host."""

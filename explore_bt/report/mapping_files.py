@@ -39,7 +39,8 @@ def write_mapping(
     """
     folder.mkdir(parents=True, exist_ok=True)
     grid, way = slam.grid(), slam.trajectory()
-    export(registry, RobotProduct(_ROBOT, grid, mapping.in_log_time(way), None, result), slam, folder)
+    product = RobotProduct(_ROBOT, grid, mapping.in_log_time(way), None, result, slam.structure())
+    export(registry, product, slam, folder)
     _report(mapping, grid, way, result, folder, radius_m)
     write_whole(folder / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
 

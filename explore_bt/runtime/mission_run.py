@@ -130,6 +130,11 @@ def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Pa
         folder = out if len(robots) == 1 else out / robot.name
         folder.mkdir(exist_ok=True)
         product = RobotProduct(
-            robot.name, robot.slam.grid(), robot.trajectory(), robot.scores.true_trajectory(), result
+            robot.name,
+            robot.slam.grid(),
+            robot.trajectory(),
+            robot.scores.true_trajectory(),
+            result,
+            robot.slam.structure(),
         )
         export(registry, product, robot.slam, folder)

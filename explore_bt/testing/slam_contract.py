@@ -24,6 +24,7 @@ import pytest
 
 from explore_bt.errors import UserError
 from explore_bt.interfaces import API_VERSION, RobotContext, Slam
+from explore_bt.testing.cloud_contract import CloudSlamContract
 from explore_bt.testing.slam_room import Room, RoomTruth, ScriptedRobot
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, Health, Imu, Measurement, Pose2, Scan2D
 
@@ -32,11 +33,12 @@ __all__ = ["SlamContract"]
 _START = Pose2(-0.6, -0.5, 0.0)
 
 
-class SlamContract:
+class SlamContract(CloudSlamContract):
     """Inherit, write ``make``, and let pytest find the subclass.
 
     Attributes:
         tolerance_m: how far the estimate may be from the truth in the suite's room.
+        takes_clouds, cloud_tolerance_m: of a 3D lidar, see ``CloudSlamContract``.
     """
 
     tolerance_m: ClassVar[float] = 0.05

@@ -10,6 +10,7 @@ from explore_bt.types.motion import MotionLimits, MotionState
 from explore_bt.types.path import Path, Waypoint
 from explore_bt.types.pose import Pose2, Twist2, wrap_angle
 from explore_bt.types.result import MappingResult, Outcome, Result, Score
+from explore_bt.types.structure import MapStructure, PoseGraph2, Voxels
 
 __all__ = [
     "FREE",
@@ -19,6 +20,7 @@ __all__ = [
     "GridWindow",
     "Health",
     "Imu",
+    "MapStructure",
     "MappingResult",
     "Measurement",
     "MotionLimits",
@@ -28,12 +30,14 @@ __all__ = [
     "Path",
     "PointCloud",
     "Pose2",
+    "PoseGraph2",
     "Result",
     "RgbdFrame",
     "Scan2D",
     "Score",
     "Trajectory",
     "Twist2",
+    "Voxels",
     "Waypoint",
     "WheelOdometry",
     "wrap_angle",

@@ -54,6 +54,7 @@ def test_the_room_is_explored_with_real_slam_and_leaves_whole_files(
     assert names >= {
         "map.pgm",
         "map.yaml",
+        "graph.g2o",
         "trajectory.tum",
         "truth.tum",
         "recording.mcap",

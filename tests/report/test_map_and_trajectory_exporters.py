@@ -54,6 +54,10 @@ def test_a_robot_that_never_moved_leaves_an_empty_trajectory(product, tmp_path):
 
 def test_exporters_name_themselves():
     assert {(exporter.kind, exporter.name) for exporter in EXPORTERS} == {
+        ("exporter", "g2o"),
         ("exporter", "map_server"),
+        ("exporter", "octomap"),
+        ("exporter", "pcd"),
+        ("exporter", "ply"),
         ("exporter", "tum"),
     }

@@ -7,11 +7,15 @@ from explore_bt.testing.slam_contract import SlamContract
 
 
 class TestKissGtsam(SlamContract):
+    takes_clouds = True
+
     def make(self) -> Slam:
         return KissGtsam(KissGtsam.Options())
 
 
 class TestKissGtsamWithOdometry(SlamContract):
+    takes_clouds = True
+
     def make(self) -> Slam:
         return KissGtsam(KissGtsam.Options(use_odometry=True))
 

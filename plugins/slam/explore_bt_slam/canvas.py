@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ from explore_bt_slam.log_odds import draw_sweep
 from explore_bt_slam.sweep import Sweep
 
 __all__ = ["Canvas"]
+
+Painter: TypeAlias = Callable[[NDArray[np.int8], NDArray[np.float64]], GridWindow]
+"""Changes cells, given them and the x, y of their corner; says within which of them a class changed."""
 
 _GROWTH_M = 5.0
 _HISTORY = 512
@@ -30,9 +33,10 @@ class Canvas:
     Args:
         resolution_m: side of a cell.
         body_radius_m: the robot's footprint, free wherever the robot has been.
+        revision: to begin with.
     """
 
-    def __init__(self, resolution_m: float, body_radius_m: float) -> None:
+    def __init__(self, resolution_m: float, body_radius_m: float, revision: int = 0) -> None:
         self._cell_m = resolution_m
         self._body_m = body_radius_m
         self._chunk = max(math.ceil(_GROWTH_M / resolution_m), 1)
@@ -41,9 +45,9 @@ class Canvas:
         self._cells = np.zeros((0, 0), dtype=np.int8)
         self._drawn = np.zeros((0, 0), dtype=np.int32)
         self._sweeps = 0
-        self._revision = 0
+        self._revision = revision
         self._windows: deque[tuple[int, GridWindow]] = deque(maxlen=_HISTORY)
-        self._whole_since = 0
+        self._whole_since = revision
         self._snapshot: OccupancyGrid | None = None
 
     @property
@@ -54,10 +58,20 @@ class Canvas:
     def draw(self, sweep: Sweep, pose: Pose2) -> None:
         """Take in a sweep seen from ``pose``."""
         self._make_room(sweep, pose)
-        window = self._draw(sweep, pose)
-        if not window.is_empty:
-            self._revision += 1
-            self._windows.append((self._revision, window))
+        self._note(self._draw(sweep, pose))
+
+    def paint(self, bounds: NDArray[np.floating[Any]], painter: Painter) -> None:
+        """Let somebody else classify the cells within (4,) x0, y0, x1, y1, metres, by his own evidence."""
+        low = np.floor(bounds[:2] / self._cell_m).astype(np.int64)
+        high = np.ceil(bounds[2:] / self._cell_m).astype(np.int64)
+        self._make_room_for(low, high)
+        (col0, row0), (col1, row1) = low - self._corner, high - self._corner
+        cells = self._cells[row0:row1, col0:col1].copy()  # one memory layout, so that kernels compile once
+        changed = painter(cells, np.asarray(low * self._cell_m, dtype=np.float64))
+        self._cells[row0:row1, col0:col1] = cells
+        self._note(
+            GridWindow(changed.row0 + row0, changed.col0 + col0, changed.row1 + row0, changed.col1 + col0)
+        )
 
     def redraw(self, sweeps: list[tuple[Sweep, Pose2]]) -> None:
         """Forget all evidence and draw these sweeps in this order; the canvas never shrinks."""
@@ -112,6 +126,11 @@ class Canvas:
         self._windows.clear()
         self._snapshot = None
 
+    def _note(self, window: GridWindow) -> None:
+        if not window.is_empty:
+            self._revision += 1
+            self._windows.append((self._revision, window))
+
     def _draw(self, sweep: Sweep, pose: Pose2) -> GridWindow:
         self._sweeps += 1
         window = np.array([2**31, 2**31, 0, 0], dtype=np.int64)
@@ -136,6 +155,10 @@ class Canvas:
         margin = max(self._body_m, sweep.reach_m) + 2.0 * self._cell_m
         low = np.floor((np.array(pose.xy) - margin) / self._cell_m).astype(np.int64)
         high = np.floor((np.array(pose.xy) + margin) / self._cell_m).astype(np.int64) + 1
+        self._make_room_for(low, high)
+
+    def _make_room_for(self, low: NDArray[np.int64], high: NDArray[np.int64]) -> None:
+        """Grow to hold columns and rows [low, high), each (2,), on the endless grid."""
         corner = self._corner if self._cells.size else low
         end = corner + np.array(self._cells.shape[::-1])
         below = -(-np.maximum(corner - low, 0) // self._chunk) * self._chunk

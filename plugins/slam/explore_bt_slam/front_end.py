@@ -79,6 +79,11 @@ class FrontEnd:
         """How far the prediction reaches."""
         return self._filter.time_s if self._filter.time_s is not None else 0.0
 
+    @property
+    def velocity_mps(self) -> NDArray[np.float64]:
+        """(2,) float64: speed over ground in ``base_link`` axes, m/s."""
+        return self._filter.velocity_mps
+
     def take_imu(self, imu: Imu) -> None:
         """Predict on."""
         self._filter.take_imu(imu)

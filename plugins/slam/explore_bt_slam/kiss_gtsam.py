@@ -12,14 +12,18 @@ from explore_bt.types import (
     Estimate,
     GridWindow,
     Imu,
+    MapStructure,
     Measurement,
     OccupancyGrid,
+    PointCloud,
     Pose2,
     RgbdFrame,
     Scan2D,
     Trajectory,
     WheelOdometry,
 )
+from explore_bt_slam.cloud_pipeline import CloudPipeline
+from explore_bt_slam.cloud_warm_up import warm_up_clouds
 from explore_bt_slam.options import KissGtsamOptions
 from explore_bt_slam.pipeline import Pipeline
 from explore_bt_slam.storage import read_arrays, write_arrays
@@ -39,12 +43,14 @@ class KissGtsam(Slam):
         super().__init__(options)
         self._settings = KissGtsamOptions.model_validate(options.model_dump())
         self._start: Pose2 | None = None
-        self._pipeline = self._new_pipeline(RobotContext())
+        self._context = RobotContext()
+        self._pipeline = self._new_pipeline(self._context)
 
     def setup(self, context: RobotContext) -> None:
         """Begin at ``context.start``; compiles the kernels on first use (some seconds, then cached)."""
-        self._start = context.start
+        self._start, self._context = context.start, context
         warm_up(self._new_pipeline(context))
+        warm_up_clouds(self._new_cloud_pipeline())
         self._pipeline = self._new_pipeline(context)
 
     def update(self, measurement: Measurement) -> None:
@@ -55,10 +61,12 @@ class KissGtsam(Slam):
             self._pipeline.take_odometry(measurement)
         elif isinstance(measurement, RgbdFrame):
             self._pipeline.take_image(measurement)
-        elif isinstance(measurement, Scan2D):
+        elif isinstance(measurement, Scan2D) and not isinstance(self._pipeline, CloudPipeline):
             begun = time.perf_counter()
             self._pipeline.take_scan(measurement)
             self._pipeline.journal.took(time.perf_counter() - begun)
+        elif isinstance(measurement, PointCloud):
+            self._take_cloud(measurement)
 
     def estimate(self) -> Estimate:
         """The pose now, carried from the last scan to the last IMU sample by the gyroscope."""
@@ -77,12 +85,19 @@ class KissGtsam(Slam):
         return self._pipeline.journal.trajectory(self._pipeline.back.poses)
 
     def figures(self) -> Mapping[str, float]:
-        """``scans``, ``keyframes``, ``loop_closures``, ``ms_per_scan_median``, ``ms_per_scan_p99``."""
+        """``scans``, ``keyframes``, ``loop_closures``, ``ms_per_scan_median``, ``ms_per_scan_p99``.
+
+        With a 3D lidar also ``submaps`` and ``voxel_mb``, the memory of their voxels.
+        """
         return {
-            **self._pipeline.journal.figures(),
+            **self._pipeline.figures(),
             "keyframes": float(len(self._pipeline.back.keyframes)),
             "loop_closures": float(self._pipeline.back.closures),
         }
+
+    def structure(self) -> MapStructure:
+        """The pose graph, and the voxels if the lidar is a 3D one."""
+        return self._pipeline.structure()
 
     def save(self, folder: Path) -> None:
         """One file, ``slam.npz``: keyframes, graph, kept sweeps, trajectory."""
@@ -90,7 +105,23 @@ class KissGtsam(Slam):
 
     def load(self, folder: Path) -> None:
         """Go on in a saved map, at ``context.start``, or where the saved trajectory ended if None."""
-        self._pipeline.restore(read_arrays(folder, self.name, self._settings.resolution), self._start)
+        arrays = read_arrays(folder, self.name, self._settings.resolution)
+        if "voxel_pool" in arrays:
+            self._pipeline = self._new_cloud_pipeline()
+        self._pipeline.restore(arrays, self._start)
+
+    def _take_cloud(self, cloud: PointCloud) -> None:
+        """The first lidar that speaks, planar or 3D, is the one that is listened to."""
+        begun = time.perf_counter()
+        if not isinstance(self._pipeline, CloudPipeline):
+            if self._pipeline.has_begun:
+                return
+            self._pipeline = self._new_cloud_pipeline()
+        self._pipeline.take_cloud(cloud)
+        self._pipeline.journal.took(time.perf_counter() - begun)
+
+    def _new_cloud_pipeline(self) -> CloudPipeline:
+        return CloudPipeline(self._settings, self._context, self._pipeline.mapper.revision)
 
     def _new_pipeline(self, context: RobotContext) -> Pipeline:
         return Pipeline(self._settings, context)

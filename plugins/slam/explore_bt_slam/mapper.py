@@ -13,7 +13,7 @@ from explore_bt.types import GridWindow, OccupancyGrid, Pose2, wrap_angle
 from explore_bt_slam.canvas import Canvas
 from explore_bt_slam.sweep import Sweep
 
-__all__ = ["KeptSweep", "Mapper"]
+__all__ = ["KeptSweep", "Mapper", "apart", "has_moved"]
 
 _SPACING_M = 0.1
 _SPACING_RAD = 0.1
@@ -68,18 +68,18 @@ class Mapper:
         pose = keyframe_pose.compose(relative)
         if self._drawn_at is not None:
             last, stamp_s = self._drawn_at
-            if not _apart(last, pose) and sweep.stamp_s - stamp_s < _REFRESH_S:
+            if not apart(last, pose) and sweep.stamp_s - stamp_s < _REFRESH_S:
                 return
         self._canvas.draw(sweep, pose)
         self._drawn_at = (pose, sweep.stamp_s)
-        if self._kept_at is None or _apart(self._kept_at, pose):
+        if self._kept_at is None or apart(self._kept_at, pose):
             self._kept.append(KeptSweep(keyframe, relative, sweep))
             self._kept_at = pose
 
     def follow(self, keyframes: NDArray[np.float64]) -> None:
         """The graph's poses, (N, 3): redraw if one has moved by more than 1 cm or 0.1° since drawn."""
         known = self._keyframes.shape[0]
-        if known and _moved(self._keyframes, keyframes[:known]):
+        if known and has_moved(self._keyframes, keyframes[:known]):
             self.redraw(keyframes)
         else:
             self._keyframes = np.vstack((self._keyframes, keyframes[known:]))
@@ -115,11 +115,13 @@ class Mapper:
         return self._canvas.changed_since(revision)
 
 
-def _apart(a: Pose2, b: Pose2) -> bool:
+def apart(a: Pose2, b: Pose2) -> bool:
+    """Whether a sweep from ``b`` shows enough that one from ``a`` did not."""
     return a.distance_to(b) >= _SPACING_M or abs(wrap_angle(b.yaw_rad - a.yaw_rad)) >= _SPACING_RAD
 
 
-def _moved(before: NDArray[np.float64], after: NDArray[np.float64]) -> bool:
+def has_moved(before: NDArray[np.float64], after: NDArray[np.float64]) -> bool:
+    """Whether any of (N, 3) poses is off by more than 1 cm or 0.1°."""
     off = after - before
     yaw = (off[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
     return bool(np.hypot(off[:, 0], off[:, 1]).max() > _MOVED_M or np.abs(yaw).max() > _MOVED_RAD)

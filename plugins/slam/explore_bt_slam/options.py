@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from pydantic import Field
+from typing import Self
+
+from pydantic import Field, model_validator
 
 from explore_bt.interfaces import PluginOptions
 from explore_bt.units import Angle, Length
@@ -25,4 +27,24 @@ class KissGtsamOptions(GroundTruthOptions):
     voxel: Length = Field(0.1, gt=0.0, description="cell of kiss-icp's map")
     loop_closures: bool = Field(True, description="close loops from the lidar")
     camera_closures: bool = Field(True, description="close loops from RGB-D images, if there are any")
+    base_height: Length = Field(0.0, description="base_link above the floor; the body pitches about it")
+    floor_height: Length = Field(0.1, gt=0.0, description="3D lidar: what is lower counts as floor")
+    robot_height: Length = Field(1.0, gt=0.0, description="3D lidar: what is higher is passed under")
+    map_height: Length = Field(2.0, gt=0.0, description="3D lidar: what is higher is not kept")
+    match_low: Length = Field(0.3, description="3D lidar: what is lower is not registered")
+    match_high: Length = Field(2.0, description="3D lidar: what is higher is not registered")
     use_odometry: bool = Field(False, description="trust the wheels for the speed between scans")
+
+    @model_validator(mode="after")
+    def _bands_are_bands(self) -> Self:
+        for low, high in (
+            ("floor_height", "robot_height"),
+            ("robot_height", "map_height"),
+            ("match_low", "match_high"),
+        ):
+            below, above = float(getattr(self, low)), float(getattr(self, high))
+            if below > above or (below == above and high != "map_height"):
+                raise ValueError(
+                    f"{low} is {below:g} m and {high} {above:g} m; {high} has to be the higher one"
+                )
+        return self

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import RobotContext
-from explore_bt.types import Estimate, Imu, Pose2, RgbdFrame, Scan2D, WheelOdometry
+from explore_bt.types import Estimate, Imu, MapStructure, Pose2, RgbdFrame, Scan2D, WheelOdometry
 from explore_bt_slam.back_end import BackEnd
 from explore_bt_slam.camera import Camera
+from explore_bt_slam.exported_graph import graph_of
 from explore_bt_slam.front_end import FrontEnd, Registered
 from explore_bt_slam.health import HealthMonitor
 from explore_bt_slam.journal import Journal
@@ -62,6 +63,11 @@ class Pipeline:
     def pose(self) -> Pose2:
         """Where the robot is now, ``map`` frame."""
         return self._scan_pose.compose(self.front.motion)
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether a scan has been taken, or a map loaded."""
+        return self._keyframe >= 0
 
     @property
     def _scan_pose(self) -> Pose2:
@@ -119,6 +125,14 @@ class Pipeline:
         health, reason = self.health.state
         stamp_s = max(self.front.time_s, 0.0)
         return Estimate(stamp_s, self.pose, self._spread(), self.mapper.revision, health, reason)
+
+    def figures(self) -> dict[str, float]:
+        """Numbers for the report, but those of the graph."""
+        return self.journal.figures()
+
+    def structure(self) -> MapStructure:
+        """The pose graph."""
+        return MapStructure(graph=graph_of(self.back.poses, self.back.edges))
 
     def arrays(self) -> Arrays:
         """The whole state."""

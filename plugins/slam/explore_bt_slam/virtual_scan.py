@@ -1,0 +1,49 @@
+"""A planar scan made from a level 3D sweep, for the registration that planar lidars use."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from explore_bt.types import Scan2D
+from explore_bt_slam.arrays import Floats, Singles
+from explore_bt_slam.level_cloud import LevelCloud
+
+__all__ = ["virtual_scan"]
+
+_BINS = 720
+
+
+def virtual_scan(cloud: LevelCloud, low_m: float, high_m: float, range_max_m: float) -> Scan2D:
+    """In each of 720 directions the nearest return between two heights above the floor.
+
+    A direction in which only other heights returned something says "nothing within range"; one without any
+    return is invalid. Beams keep the direction and time of their return, so that they are deskewed like any
+    other scan's; they start in ``base_link``.
+    """
+    angles, ranges, times = _nearest(cloud.own, cloud.times_s, low_m, high_m, _BINS)
+    return Scan2D(cloud.stamp_s, angles, ranges, times, 0.0, range_max_m, "base_link")
+
+
+@njit(cache=True)
+def _nearest(
+    points: Singles, stamps: Floats, low: float, high: float, bins: int
+) -> tuple[Floats, Singles, Floats]:
+    width = 2.0 * np.pi / bins
+    angles = np.linspace(-np.pi, np.pi - width, bins) + 0.5 * width
+    ranges = np.full(bins, np.float32(np.nan), np.float32)
+    times = np.zeros(bins)
+    for i in range(points.shape[0]):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        angle = np.arctan2(y, x)
+        k = min(int((angle + np.pi) / width), bins - 1)
+        if low <= z <= high:
+            distance = np.float32(np.hypot(x, y))
+            if not ranges[k] <= distance:  # NaN and inf too
+                ranges[k] = distance
+                angles[k] = angle
+                times[k] = stamps[i]
+        elif np.isnan(ranges[k]):
+            ranges[k] = np.inf
+            times[k] = stamps[i]
+    return angles, ranges, times
