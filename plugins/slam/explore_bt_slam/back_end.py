@@ -18,8 +18,9 @@ from explore_bt_slam.sweep import Sweep
 
 __all__ = ["BackEnd"]
 
+_NEIGHBOURS_M = 6.0
 _TRUSTED_SIGMA_M = 0.05
-_EDGE_FLOOR = np.diag([0.002, 0.002, 0.0005]) ** 2
+_EDGE_FLOOR = np.diag([0.005, 0.005, 0.003]) ** 2
 _EDGE_MOST = 1.0
 """Largest variance of a step between keyframes, m² and rad²: in a hall without walls in range the filter's
 own grows without bound, and the graph's equations would become singular in doubles."""
@@ -29,12 +30,10 @@ class BackEnd:
     """Where every keyframe is.
 
     Args:
-        reach_m: the lidar's range: how far a keyframe's points can lie from it.
         loop_closures: whether to look for them.
     """
 
-    def __init__(self, reach_m: float, loop_closures: bool) -> None:
-        self._reach_m = reach_m
+    def __init__(self, loop_closures: bool) -> None:
         self._loop_closures = loop_closures
         self._keyframes: list[Keyframe] = []
         self._graph = PoseGraph()
@@ -97,10 +96,8 @@ class BackEnd:
         """The local map about a keyframe: (N, 2) points in the ``map`` frame, and line pieces."""
         if self._covariances.shape[0] != len(self._keyframes):
             self._measure(keyframe)
-        chosen = trusted_neighbours(
-            self.poses, self._covariances, keyframe, self._reach_m + 1.0, _TRUSTED_SIGMA_M
-        )
-        half_side_m = self._reach_m + 2.0
+        chosen = trusted_neighbours(self.poses, self._covariances, keyframe, _NEIGHBOURS_M, _TRUSTED_SIGMA_M)
+        half_side_m = self._keyframes[keyframe].reach_m + 2.0
         surfels = gather_surfels(self._keyframes, self.poses, chosen, self.pose(keyframe).xy, half_side_m)
         return gather_points(self._keyframes, self.poses, chosen), surfels
 

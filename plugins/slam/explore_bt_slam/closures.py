@@ -38,7 +38,7 @@ class ClosureRule:
 
     driven_m: float = 4.0
     distance_m: float = 2.5
-    per_keyframe: int = 2
+    per_keyframe: int = 5
     spacing_m: float = 1.0
     overlap: float = 0.7
     ambiguity: float = 0.85
@@ -129,8 +129,9 @@ class ClosureFinder:
         guess = predicted
         if window_m > 0.1:
             window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.02, rule.window_max_rad)
-            grid = ScoreGrid(gather_points(keyframes, poses, chosen), 0.5)
-            match = search(grid, scan.points[::2], predicted, window_m, window_rad)
+            grid = ScoreGrid(_near(gather_points(keyframes, poses, chosen), poses[old, :2], 9.0), 0.5)
+            seen = _near(scan.points, np.zeros(2), 8.0)[:: max(scan.points.shape[0] // 120, 1)]
+            match = search(grid, seen, predicted, window_m, window_rad)
             if match.runner_up > rule.ambiguity * match.score:
                 return None
             guess = match.pose
@@ -189,6 +190,11 @@ def _neighbourhood(keyframes: Sequence[Keyframe], old: int) -> list[int]:
         for index in range(max(old - 8, 0), min(old + 9, len(keyframes)))
         if abs(keyframes[index].driven_m - driven) <= 2.0
     ]
+
+
+def _near(points: NDArray[np.float64], centre: NDArray[np.float64], radius_m: float) -> NDArray[np.float64]:
+    """Those of (N, 2) points within a radius."""
+    return points[np.hypot(points[:, 0] - centre[0], points[:, 1] - centre[1]) <= radius_m]
 
 
 def _between(poses: NDArray[np.float64], a: int, b: int) -> Pose2:

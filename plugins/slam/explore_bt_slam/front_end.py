@@ -58,7 +58,7 @@ class FrontEnd:
     """Deskew, prediction, kiss-icp, point-to-line refinement."""
 
     def __init__(self, options: KissGtsamOptions, speed_limit_mps: float) -> None:
-        self._max_range_m = options.max_range
+        self._max_range_m = options.match_range
         self._filter = InertialFilter(speed_limit_mps)
         self._kiss = KissRegistration(options.voxel)
         self._points = np.zeros((0, 2))

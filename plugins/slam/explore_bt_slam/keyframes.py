@@ -26,6 +26,11 @@ class Keyframe:
     normals: NDArray[np.float64]
     driven_m: float
 
+    @property
+    def reach_m(self) -> float:
+        """No point lies farther off."""
+        return float(np.hypot(self.points[:, 0], self.points[:, 1]).max(initial=0.0))
+
 
 @dataclass(frozen=True, slots=True)
 class KeyframeRule:

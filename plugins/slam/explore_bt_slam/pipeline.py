@@ -42,7 +42,8 @@ class Pipeline:
         start, body_radius_m = context.start or Pose2.identity(), context.footprint_radius_m
         # a driver may overshoot its limit a little
         self.front = FrontEnd(options, 1.1 * context.limits.speed_mps)
-        self.back = BackEnd(options.max_range, options.loop_closures)
+        self.back = BackEnd(options.loop_closures)
+        self._map_range_m = options.max_range
         self.mapper = Mapper(options.resolution, body_radius_m)
         self.journal = Journal()
         self.health = HealthMonitor()
@@ -159,7 +160,9 @@ class Pipeline:
         self.mapper.follow(self.back.poses)
 
     def _draw(self, sweep: Sweep) -> None:
-        self.mapper.see(sweep, self._keyframe, self.back.pose(self._keyframe), self._relative)
+        self.mapper.see(
+            sweep.cut(self._map_range_m), self._keyframe, self.back.pose(self._keyframe), self._relative
+        )
 
     def _judge(self, registered: Registered) -> None:
         if registered.problem:
