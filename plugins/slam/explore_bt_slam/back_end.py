@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
 from explore_bt_slam.closures import ClosureFinder
+from explore_bt_slam.far_closures import FarClosureFinder
 from explore_bt_slam.graph_distance import relative_covariances
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.local_map import gather_points, gather_surfels, trusted_neighbours
@@ -19,8 +20,8 @@ from explore_bt_slam.sweep import Sweep
 __all__ = ["BackEnd"]
 
 _NEIGHBOURS_M = 6.0
-_TRUSTED_SIGMA_M = 0.05
-_EDGE_FLOOR = np.diag([0.005, 0.005, 0.003]) ** 2
+_TRUSTED_SIGMA_M = 0.07
+_EDGE_FLOOR = np.diag([0.0075, 0.0075, 0.0045]) ** 2
 _EDGE_MOST = 1.0
 """Largest variance of a step between keyframes, m² and rad²: in a hall without walls in range the filter's
 own grows without bound, and the graph's equations would become singular in doubles."""
@@ -38,6 +39,7 @@ class BackEnd:
         self._keyframes: list[Keyframe] = []
         self._graph = PoseGraph()
         self._finder = ClosureFinder()
+        self._far_finder = FarClosureFinder()
         self._closures = 0
         self._covariances = np.zeros((0, 3, 3))
 
@@ -109,6 +111,8 @@ class BackEnd:
 
     def _close_loops(self, newest: int) -> None:
         found = self._finder.find(self._keyframes, self.poses, self._covariances)
+        if not found:
+            found = self._far_finder.find(self._keyframes, self.poses, self._covariances)
         taken = self._graph.close(found)
         if taken:
             self._closures += len(taken)

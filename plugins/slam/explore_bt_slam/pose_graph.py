@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
+from explore_bt_slam.point_to_line import Alignment
 
-__all__ = ["Edge", "PoseGraph"]
+__all__ = ["Edge", "PoseGraph", "closure_edge"]
 
 _PRIOR_SIGMAS = np.array([1e-3, 1e-3, 1e-4])
 _CAUCHY_SCALE = 1.0
@@ -36,6 +37,21 @@ class Edge:
     relative: Pose2
     covariance: NDArray[np.float64]
     is_closure: bool
+
+
+def closure_edge(poses: NDArray[np.float64], old: int, newest: int, found: Alignment) -> Edge:
+    """A scan laid into an old place, as a constraint; a floor stands for what all matches have in common.
+
+    Args:
+        poses: (N, 3) float64 keyframe poses, ``map`` frame.
+        old, newest: the keyframes at its ends.
+        found: where the scan of ``newest`` fits.
+    """
+    cos, sin = math.cos(found.pose.yaw_rad), math.sin(found.pose.yaw_rad)
+    turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    spread = np.linalg.inv(found.information + np.eye(3) * 1e-6)
+    covariance = turn @ spread @ turn.T + np.diag([0.005, 0.005, 0.002]) ** 2
+    return Edge(old, newest, Pose2(*poses[old].tolist()).between(found.pose), covariance, is_closure=True)
 
 
 class PoseGraph:
