@@ -135,7 +135,9 @@ class ClosureFinder:
         if window_m > 0.1:
             window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.02, rule.window_max_rad)
             grid = ScoreGrid(self._near(gather_points(keyframes, poses, chosen), predicted), 0.5)
-            match = search(grid, scan.points[:: max(scan.points.shape[0] // 150, 1)], predicted, window_m, window_rad)
+            match = search(
+                grid, scan.points[:: max(scan.points.shape[0] // 150, 1)], predicted, window_m, window_rad
+            )
             if match.runner_up > rule.ambiguity * match.score:
                 return None
             guess = match.pose
@@ -160,7 +162,8 @@ class ClosureFinder:
         credible = covariance + np.diag([0.02, 0.02, 0.01]) ** 2
         surprise = float(off @ np.linalg.solve(credible, off))
         return (
-            found.overlap >= (self._rule.overlap if window_m <= self._rule.wide_m else self._rule.overlap_wide)
+            found.overlap
+            >= (self._rule.overlap if window_m <= self._rule.wide_m else self._rule.overlap_wide)
             and found.residual_m <= 0.05
             and found.weakest_sigma_m <= max(0.02, 0.1 * window_m)
             and surprise <= self._rule.gate

@@ -23,7 +23,8 @@ def agree(one: Edge, other: Edge, poses: NDArray[np.float64], covariances: NDArr
     Around the loop a → b → b' → a' → a the known motions and the two closures must cancel.
 
     Args:
-        one, other: ``b`` recent, ``a`` old.
+        one: ``b`` recent, ``a`` old.
+        other: the same.
         poses: (N, 3) float64 keyframe poses.
         covariances: (N, 3, 3) float64 relative to the newest keyframe, see ``relative_covariances``.
     """
@@ -44,7 +45,8 @@ def largest_consistent(
 
     Args:
         edges: at least one.
-        poses, covariances: see ``agree``.
+        poses: see ``agree``.
+        covariances: see ``agree``.
     """
     chosen = [edges[-1]]
     for edge in reversed(edges[:-1]):

@@ -22,6 +22,7 @@ from explore_bt_slam.trail import Trail
 __all__ = ["InertialFilter", "InertialNoise"]
 
 _IMU_SILENCE_S = 0.1
+_SPAN_GAIN = 0.1
 _WHEEL_FLOOR = np.array([0.01, 0.01, 0.005])
 _WHEEL_SHARE = np.array([[0.1, 0.02], [0.1, 0.02], [0.05, 0.1]])
 """Standard deviations of a step by the wheels: x, y (m), yaw (rad); what is always there, and per metre and
@@ -71,6 +72,7 @@ class InertialFilter:
         self._imu = (0.0, 0.0, 0.0)
         self._odometry: WheelOdometry | None = None
         self._wheels_s = -math.inf
+        self._span_s = 0.0
         self._times: list[float] = []
         self._poses: list[NDArray[np.float64]] = []
 
@@ -186,7 +188,9 @@ class InertialFilter:
         self._covariance = 0.5 * (turned + turned.T)
         span_s = self._times[-1] - self._times[0]
         if span_s > 0.0:
-            self._yaw_rate_rps = motion.yaw_rad / span_s
+            # stamps of some loggers jitter down to a millisecond: such a span says nothing about a rate
+            self._span_s += _SPAN_GAIN * (span_s - self._span_s) if self._span_s else span_s
+            self._yaw_rate_rps = motion.yaw_rad / max(span_s, self._span_s)
         self._restart()
 
     def distrust(self) -> NDArray[np.float64]:

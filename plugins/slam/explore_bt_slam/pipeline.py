@@ -14,7 +14,7 @@ from explore_bt_slam.journal import Journal
 from explore_bt_slam.keyframes import KeyframeRule
 from explore_bt_slam.mapper import Mapper
 from explore_bt_slam.options import KissGtsamOptions
-from explore_bt_slam.scan_check import fault_of
+from explore_bt_slam.scan_check import fault_of, without_body
 from explore_bt_slam.storage import (
     Arrays,
     pack_edges,
@@ -50,6 +50,7 @@ class Pipeline:
         self._rule = KeyframeRule(options.keyframe_distance, options.keyframe_angle)
         self._use_odometry = options.use_odometry
         self.mapper.begin(start, Pose2.identity())
+        self._body_radius_m = body_radius_m
         self._start = start
         self._keyframe = -1
         self._weak_keyframes = 0
@@ -86,6 +87,7 @@ class Pipeline:
 
     def take_scan(self, scan: Scan2D) -> None:
         """One scan, all the way to the map."""
+        scan = without_body(scan, self._body_radius_m)
         problem = fault_of(scan, self._scan_s)
         if problem:
             self.health.bad(scan.stamp_s, problem)
