@@ -88,6 +88,7 @@ def test_a_log_becomes_the_files_of_a_mission(folder):
     ]
     assert "\x1b" not in shown.output
     assert {path.name for path in (folder / "out").iterdir()} == {
+        "graph.g2o",
         "map.pgm",
         "map.yaml",
         "map_view.png",

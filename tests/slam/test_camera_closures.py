@@ -66,7 +66,7 @@ class Witness(CameraClosures):
 
 def drive(camera: RoomCamera, poses: list[Pose2], leap_at: int, leap: Pose2) -> tuple[BackEnd, list[Edge]]:
     """A back end without lidar closures that is told ``leap`` too much on the way to one keyframe."""
-    back, witness, maker = BackEnd(5.0, loop_closures=False), Witness(), SightMaker()
+    back, witness, maker = BackEnd(loop_closures=False), Witness(), SightMaker()
     back.looks = witness
     back.begin(seen(camera.room, poses[0], 0.0), poses[0])
     for index, pose in enumerate(poses[1:], start=1):
@@ -205,7 +205,7 @@ def test_a_lidar_closure_with_the_wrong_one_of_many_niches_is_contradicted() -> 
 def test_places_of_a_saved_map_are_known_by_sight() -> None:
     poses, camera = lap(18), textured(Room.furnished())
     first, _ = drive(camera, poses[:12], 99, Pose2.identity())
-    second, maker = BackEnd(5.0, loop_closures=False), SightMaker()
+    second, maker = BackEnd(loop_closures=False), SightMaker()
     second.restore(list(first.keyframes), first.poses, list(first.edges))
     second.looks.restore(first.looks.arrays())
     for index in range(12, 18):

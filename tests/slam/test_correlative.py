@@ -52,9 +52,12 @@ def test_branch_and_bound_finds_what_brute_force_finds() -> None:
 
 def test_the_bound_is_never_below_any_score_of_its_block() -> None:
     grid = ScoreGrid(corner(), 0.5)
-    for row in range(0, grid.scores.shape[0], 7):
-        for col in range(0, grid.scores.shape[1], 7):
-            assert grid.bounds[row, col] == grid.scores[row : row + 8, col : col + 8].max()
+    for level in range(grid.pyramid.shape[0]):
+        side = 2**level
+        for row in range(0, grid.scores.shape[0], 7):
+            for col in range(0, grid.scores.shape[1], 7):
+                block = grid.scores[row : row + side, col : col + side]
+                assert grid.pyramid[level, row, col] == block.max()
 
 
 def test_a_comb_of_equal_pillars_is_ambiguous_and_a_corner_is_not() -> None:

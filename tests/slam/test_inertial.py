@@ -68,3 +68,16 @@ def test_the_wheels_correct_the_speed_only() -> None:
         inertial.take_odometry(WheelOdometry(stamp_s, Pose2(0.3 * stamp_s, 0.0, 0.0)))
     assert abs(float(inertial.velocity_mps[0]) - 0.3) < 0.05
     assert abs(inertial.motion.yaw_rad) < 0.05
+
+
+def test_without_imu_the_wheels_are_the_prediction_whatever_the_clock_says() -> None:
+    inertial, last = InertialFilter(), Pose2.identity()
+    for stamp_s, yaw_rad in ((0.0, 0.0), (0.001, 0.3), (1.5, 0.1), (1.501, 0.9)):
+        now = last.compose(Pose2(0.2, 0.0, yaw_rad))
+        inertial.take_odometry(WheelOdometry(stamp_s, now))
+        inertial.advance_to(stamp_s)
+        if stamp_s > 0.0:
+            assert np.allclose(inertial.motion.as_array(), last.between(now).as_array(), atol=1e-9)
+            inertial.correct(inertial.motion, EXACT)
+        last = now
+    assert not inertial.is_blind

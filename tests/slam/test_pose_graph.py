@@ -90,7 +90,7 @@ def test_a_restored_graph_has_the_same_poses_and_goes_on() -> None:
 
 def test_steps_that_know_nothing_do_not_make_the_graph_singular() -> None:
     sweep = Sweep(0.0, np.zeros((1, 2), np.float32), np.ones((1, 2), np.float32), np.zeros(1, np.bool_))
-    end = BackEnd(5.0, loop_closures=False)
+    end = BackEnd(loop_closures=False)
     newest = end.begin(sweep, Pose2.identity())
     for scale in (1e-12, 1e6, 1e18, np.nan):
         for _ in range(40):

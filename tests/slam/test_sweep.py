@@ -3,7 +3,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from explore_bt_slam.sweep import deskew
+from explore_bt_slam.sweep import Sweep, deskew
 from explore_bt_slam.trail import Trail
 
 from explore_bt.types import Pose2, Scan2D
@@ -46,3 +46,12 @@ def test_a_corrected_trail_ends_where_it_is_told_and_begins_where_it_began() -> 
     assert np.allclose(bent.poses[0], 0.0)
     assert np.allclose(bent.poses[1], [0.025, 0.005, 0.04])
     assert np.allclose(bent.poses[2], [0.06, 0.01, 0.08])
+
+
+def test_a_cut_sweep_keeps_near_returns_and_clears_up_to_the_cut() -> None:
+    ends = np.array([[1.0, 0.0], [0.0, 8.0], [6.0, 0.0]], np.float32)
+    sweep = Sweep(0.0, np.zeros((3, 2), np.float32), ends, np.array([True, True, False]))
+    cut = sweep.cut(5.0)
+    assert np.allclose(cut.ends, [[1.0, 0.0], [0.0, 5.0], [5.0, 0.0]])
+    assert cut.hit.tolist() == [True, False, False]
+    assert sweep.cut(9.0) is sweep

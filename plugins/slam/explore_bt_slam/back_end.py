@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from explore_bt.types import Pose2
 from explore_bt_slam.camera_closures import CameraClosures
 from explore_bt_slam.closures import ClosureFinder
+from explore_bt_slam.far_closures import FarClosureFinder
 from explore_bt_slam.graph_distance import relative_covariances
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.local_map import gather_points, gather_surfels, trusted_neighbours
@@ -20,8 +21,9 @@ from explore_bt_slam.sweep import Sweep
 
 __all__ = ["BackEnd"]
 
-_TRUSTED_SIGMA_M = 0.05
-_EDGE_FLOOR = np.diag([0.002, 0.002, 0.0005]) ** 2
+_NEIGHBOURS_M = 6.0
+_TRUSTED_SIGMA_M = 0.07
+_EDGE_FLOOR = np.diag([0.0075, 0.0075, 0.0045]) ** 2
 _EDGE_MOST = 1.0
 """Largest variance of a step between keyframes, m² and rad²: in a hall without walls in range the filter's
 own grows without bound, and the graph's equations would become singular in doubles."""
@@ -31,19 +33,18 @@ class BackEnd:
     """Where every keyframe is.
 
     Args:
-        reach_m: the lidar's range: how far a keyframe's points can lie from it.
         loop_closures: whether to look for them by lidar.
 
     Attributes:
         looks: what places look like, and the loops that this closes.
     """
 
-    def __init__(self, reach_m: float, loop_closures: bool) -> None:
-        self._reach_m = reach_m
+    def __init__(self, loop_closures: bool) -> None:
         self._loop_closures = loop_closures
         self._keyframes: list[Keyframe] = []
         self._graph = PoseGraph()
         self._finder = ClosureFinder()
+        self._far_finder = FarClosureFinder()
         self._closures = 0
         self._covariances = np.zeros((0, 3, 3))
         self.looks = CameraClosures()
@@ -110,10 +111,8 @@ class BackEnd:
         """The local map about a keyframe: (N, 2) points in the ``map`` frame, and line pieces."""
         if self._covariances.shape[0] != len(self._keyframes):
             self._measure(keyframe)
-        chosen = trusted_neighbours(
-            self.poses, self._covariances, keyframe, self._reach_m + 1.0, _TRUSTED_SIGMA_M
-        )
-        half_side_m = self._reach_m + 2.0
+        chosen = trusted_neighbours(self.poses, self._covariances, keyframe, _NEIGHBOURS_M, _TRUSTED_SIGMA_M)
+        half_side_m = self._keyframes[keyframe].reach_m + 2.0
         surfels = gather_surfels(self._keyframes, self.poses, chosen, self.pose(keyframe).xy, half_side_m)
         return gather_points(self._keyframes, self.poses, chosen), surfels
 
@@ -125,7 +124,10 @@ class BackEnd:
 
     def _close_loops(self, newest: int, sight: Sight | None) -> None:
         keyframes, poses, covariances = self._keyframes, self.poses, self._covariances
-        found = self._finder.find(keyframes, poses, covariances) if self._loop_closures else []
+        found: list[Edge] = []
+        if self._loop_closures:
+            found = self._finder.find(keyframes, poses, covariances)
+            found = found or self._far_finder.find(keyframes, poses, covariances)
         if sight is not None:
             found = [] if self.looks.contradict(sight, found, keyframes, poses) else found
             found += self.looks.find(sight, keyframes, poses, covariances)

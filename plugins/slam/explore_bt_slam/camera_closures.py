@@ -32,7 +32,6 @@ class CameraRule:
         per_keyframe: at most so many candidates, ``spacing_m`` of way apart.
         rival: another place with this share of the best one's inliers makes both of them doubtful.
         rival_m: closures that put the robot this far apart are rivals.
-        gate: χ² of three degrees of freedom for two closures that should say the same.
         same_view_m, same_view_rad: two views from places this close should match.
         together_m: keyframes with less way between them lie rightly to each other.
         rich: a view with fewer features contradicts nothing.
@@ -46,7 +45,6 @@ class CameraRule:
     spacing_m: float = 1.0
     rival: float = 0.6
     rival_m: float = 0.5
-    gate: float = 16.3
     same_view_m: float = 0.35
     same_view_rad: float = 0.25
     together_m: float = 3.0
@@ -70,7 +68,7 @@ class CameraClosures:
     def __init__(self, rule: CameraRule | None = None) -> None:
         self._rule = rule or CameraRule()
         self._store = SightStore()
-        self._agreement = Agreement(self._rule.gate)
+        self._agreement = Agreement()
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """What the camera remembers, for a file."""

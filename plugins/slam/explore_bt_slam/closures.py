@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
+from explore_bt_slam.consistency import agree
 from explore_bt_slam.correlative import ScoreGrid, search
 from explore_bt_slam.keyframes import Keyframe
-from explore_bt_slam.local_map import gather_points, gather_surfels
+from explore_bt_slam.local_map import gather_points, gather_surfels, stretch_about
 from explore_bt_slam.point_to_line import Alignment, align
-from explore_bt_slam.pose_graph import Edge
+from explore_bt_slam.pose_graph import Edge, closure_edge
 
-__all__ = ["ClosureFinder", "ClosureRule", "neighbourhood"]
+__all__ = ["ClosureFinder", "ClosureRule"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,18 +30,25 @@ class ClosureRule:
         distance_m: farther apart they share too little to match.
         per_keyframe: at most so many attempts, spread over different places.
         spacing_m: between the places tried.
-        overlap: least share of the scan that must fit the old map.
+        reach_m: farther points take no part.
+        stretch_m: an old place is what was seen over so much way before and after it.
+        overlap, overlap_wide: least share of the scan that must fit the old map, in a narrow and in a wide
+            window.
         ambiguity: a rival pose with more than this share of the best score means "cannot tell".
         points: a scan with fewer returns says too little about a place.
         gate: χ² of three degrees of freedom that a closure may be off from the graph's own belief.
         wide_m: closures searched in a window wider than this wait for a second, consistent one.
+        window_max_m, window_max_rad: beyond, see ``FarClosureFinder``.
     """
 
     driven_m: float = 4.0
     distance_m: float = 2.5
-    per_keyframe: int = 2
+    per_keyframe: int = 5
     spacing_m: float = 1.0
-    overlap: float = 0.7
+    reach_m: float = 8.0
+    stretch_m: float = 3.0
+    overlap: float = 0.55
+    overlap_wide: float = 0.65
     ambiguity: float = 0.85
     wide_m: float = 0.5
     window_max_m: float = 3.0
@@ -49,17 +57,12 @@ class ClosureRule:
     points: int = 40
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Pending:
-    edge: Edge
-
-
 class ClosureFinder:
     """Proposes closures for the newest keyframe; keeps the doubtful ones until a second one agrees."""
 
     def __init__(self, rule: ClosureRule | None = None) -> None:
         self._rule = rule or ClosureRule()
-        self._pending: deque[_Pending] = deque(maxlen=20)
+        self._pending: deque[Edge] = deque(maxlen=20)
 
     def find(
         self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], covariances: NDArray[np.float64]
@@ -77,6 +80,8 @@ class ClosureFinder:
             return edges
         for old in self._candidates(keyframes, poses, covariances):
             window_m = self._window_m(covariances[old])
+            if window_m > self._rule.window_max_m:
+                continue
             edge = self._match(keyframes, poses, covariances[old], old, newest, window_m)
             if edge is None:
                 continue
@@ -111,7 +116,7 @@ class ClosureFinder:
     def _window_m(self, covariance: NDArray[np.float64]) -> float:
         """Half the side of the search: three standard deviations of the worst direction, and a cell."""
         worst = float(np.linalg.eigvalsh(covariance[:2, :2])[-1]) if np.isfinite(covariance[0, 0]) else 100.0
-        return min(3.0 * math.sqrt(max(worst, 0.0)) + 0.05, self._rule.window_max_m)
+        return 3.0 * math.sqrt(max(worst, 0.0)) + 0.05
 
     def _match(
         self,
@@ -123,22 +128,29 @@ class ClosureFinder:
         window_m: float,
     ) -> Edge | None:
         """Search, refine, verify; None where any of it fails."""
-        rule, scan = self._rule, keyframes[newest]
+        rule, scan = self._rule, keyframes[newest].within(self._rule.reach_m)
         predicted = Pose2(*poses[newest].tolist())
-        chosen = neighbourhood(keyframes, old)
+        chosen = stretch_about(keyframes, old, rule.stretch_m)
         guess = predicted
         if window_m > 0.1:
             window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.02, rule.window_max_rad)
-            grid = ScoreGrid(gather_points(keyframes, poses, chosen), 0.5)
-            match = search(grid, scan.points[::2], predicted, window_m, window_rad)
+            grid = ScoreGrid(self._near(gather_points(keyframes, poses, chosen), predicted), 0.5)
+            match = search(
+                grid, scan.points[:: max(scan.points.shape[0] // 150, 1)], predicted, window_m, window_rad
+            )
             if match.runner_up > rule.ambiguity * match.score:
                 return None
             guess = match.pose
-        surfels = gather_surfels(keyframes, poses, chosen, predicted.xy, 9.0)
+        surfels = gather_surfels(keyframes, poses, chosen, predicted.xy, rule.reach_m + window_m)
         found = align(scan.points, scan.normals, surfels, guess, guess, np.eye(3) * 1e-3)
         if not self._is_sound(found, predicted, covariance, window_m):
             return None
-        return _edge(poses, old, newest, found)
+        return closure_edge(poses, old, newest, found)
+
+    def _near(self, points: NDArray[np.float64], pose: Pose2) -> NDArray[np.float64]:
+        """Those of (N, 2) points that the scan can reach in its window."""
+        reach_m = self._rule.reach_m + self._rule.window_max_m
+        return points[np.hypot(points[:, 0] - pose.x, points[:, 1] - pose.y) <= reach_m]
 
     def _is_sound(
         self, found: Alignment, predicted: Pose2, covariance: NDArray[np.float64], window_m: float
@@ -150,55 +162,18 @@ class ClosureFinder:
         credible = covariance + np.diag([0.02, 0.02, 0.01]) ** 2
         surprise = float(off @ np.linalg.solve(credible, off))
         return (
-            found.overlap >= self._rule.overlap
+            found.overlap
+            >= (self._rule.overlap if window_m <= self._rule.wide_m else self._rule.overlap_wide)
             and found.residual_m <= 0.05
             and found.weakest_sigma_m <= max(0.02, 0.1 * window_m)
             and surprise <= self._rule.gate
         )
 
     def _agreed(self, edge: Edge, poses: NDArray[np.float64], covariances: NDArray[np.float64]) -> list[Edge]:
-        """Both closures, if an earlier doubtful one says the same about the drift; else wait.
-
-        Pairwise consistency (Mangelson et al. 2018): around the loop a → b → b' → a' → a the known
-        motions and the two closures must cancel.
-        """
-        for pending in list(self._pending):
-            other = pending.edge
-            if other.b == edge.b:
-                continue
-            loop = (
-                edge.relative.compose(_between(poses, edge.b, other.b))
-                .compose(other.relative.inverse())
-                .compose(_between(poses, other.a, edge.a))
-            ).as_array()
-            spread = (
-                covariances[other.b] + edge.covariance + other.covariance + np.diag([0.05, 0.05, 0.02]) ** 2
-            )
-            if float(loop @ np.linalg.solve(spread, loop)) <= self._rule.gate:
-                self._pending.remove(pending)
+        """Both closures, if an earlier doubtful one says the same about the drift; else wait."""
+        for other in list(self._pending):
+            if other.b != edge.b and agree(edge, other, poses, covariances):
+                self._pending.remove(other)
                 return [other, edge]
-        self._pending.append(_Pending(edge))
+        self._pending.append(edge)
         return []
-
-
-def neighbourhood(keyframes: Sequence[Keyframe], old: int) -> list[int]:
-    """The submap about an old keyframe: those driven through within 2 m of way before and after it."""
-    driven = keyframes[old].driven_m
-    return [
-        index
-        for index in range(max(old - 8, 0), min(old + 9, len(keyframes)))
-        if abs(keyframes[index].driven_m - driven) <= 2.0
-    ]
-
-
-def _between(poses: NDArray[np.float64], a: int, b: int) -> Pose2:
-    return Pose2(*poses[a].tolist()).between(Pose2(*poses[b].tolist()))
-
-
-def _edge(poses: NDArray[np.float64], old: int, newest: int, found: Alignment) -> Edge:
-    """The closure as a constraint; a floor stands for what all matches have in common."""
-    cos, sin = math.cos(found.pose.yaw_rad), math.sin(found.pose.yaw_rad)
-    turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    spread = np.linalg.inv(found.information + np.eye(3) * 1e-6)
-    covariance = turn @ spread @ turn.T + np.diag([0.005, 0.005, 0.002]) ** 2
-    return Edge(old, newest, Pose2(*poses[old].tolist()).between(found.pose), covariance, is_closure=True)

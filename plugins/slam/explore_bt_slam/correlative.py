@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 import math
 from dataclasses import dataclass
 
@@ -10,13 +11,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
-from explore_bt_slam.arrays import Floats, Ints, Singles
+from explore_bt_slam.arrays import Floats, Ints32, Singles
 
 __all__ = ["Match", "ScoreGrid", "search"]
 
 _CELL_M = 0.05
-_BLUR_M = 0.05
-_BLOCK = 8
+_LEVELS = 5
+_FAR_M = 8.0
 _PEAK_M = 0.35
 _PEAK_RAD = 0.15
 
@@ -25,18 +26,31 @@ class ScoreGrid:
     """How well a point would fit at each place: 1 on a seen point, falling off as a Gaussian.
 
     Attributes:
-        scores: (rows, cols) float32 in [0, 1].
-        bounds: (rows, cols) float32: the largest score in the 8 × 8 cells that begin here.
+        pyramid: (levels, rows, cols) float32 in [0, 1]: level 0 is the score itself, level k the largest
+            score in the 2^k × 2^k cells that begin here.
         origin_xy: lower left corner, metres, ``map`` frame.
+        cell_m: side of a cell.
+
+    Args:
+        points: (N, 2) float64, metres.
+        margin_m: the grid reaches this far beyond them.
+        cell_m: side of a cell, and the blur of a point.
     """
 
-    def __init__(self, points: NDArray[np.float64], margin_m: float) -> None:
-        margin = margin_m + _BLOCK * _CELL_M
+    def __init__(self, points: NDArray[np.float64], margin_m: float, cell_m: float = _CELL_M) -> None:
+        margin = margin_m + 2**_LEVELS * cell_m
+        self.cell_m = cell_m
         self.origin_xy = points.min(axis=0) - margin
-        shape = np.ceil((points.max(axis=0) + margin - self.origin_xy) / _CELL_M).astype(np.int64)
-        self.scores = np.zeros((int(shape[1]), int(shape[0])), dtype=np.float32)
-        _splat(self.scores, points, self.origin_xy, _CELL_M, _BLUR_M)
-        self.bounds = _block_maxima(self.scores, _BLOCK)
+        shape = np.ceil((points.max(axis=0) + margin - self.origin_xy) / cell_m).astype(np.int64)
+        self.pyramid = np.zeros((_LEVELS + 1, int(shape[1]), int(shape[0])), dtype=np.float32)
+        _splat(self.pyramid[0], points, self.origin_xy, cell_m, cell_m)
+        for level in range(_LEVELS):
+            _merge(self.pyramid[level], self.pyramid[level + 1], 2**level)
+
+    @property
+    def scores(self) -> NDArray[np.float32]:
+        """(rows, cols) float32: level 0."""
+        return np.asarray(self.pyramid[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +75,11 @@ def search(
     window_m: float,
     window_rad: float,
     rivals: float = 0.8,
+    least: float = 0.0,
 ) -> Match:
     """The pose within the window that lays the points best onto the grid.
 
-    Branch and bound over 8 × 8 blocks of offsets for every rotation (Hess et al. 2016, one level).
+    Best-first branch and bound over a pyramid of maxima for every rotation (Hess et al. 2016).
 
     Args:
         grid: what is known.
@@ -74,24 +89,24 @@ def search(
         window_rad: half its opening.
         rivals: poses down to this share of the best score are looked into, so that ambiguity shows;
             1 looks for the best only, and is faster.
+        least: no pose below this score is of interest; the score is 0 if there is none.
     """
-    far = max(float(np.hypot(points[:, 0], points[:, 1]).max()), 1.0)
-    step = _CELL_M / far
+    far = min(max(float(np.hypot(points[:, 0], points[:, 1]).max()), 1.0), _FAR_M)
+    step = grid.cell_m / far
     turns = math.ceil(window_rad / step)
     angles = centre.yaw_rad + step * np.arange(-turns, turns + 1)
     x, y, yaw, score, runner_up = _search(
-        grid.scores,
-        grid.bounds,
+        grid.pyramid,
         grid.origin_xy,
-        _CELL_M,
+        grid.cell_m,
         points,
         angles,
         np.array(centre.xy),
-        math.ceil(window_m / _CELL_M),
-        _BLOCK,
+        math.ceil(window_m / grid.cell_m),
         _PEAK_M,
         _PEAK_RAD,
         rivals,
+        least,
     )
     return Match(Pose2(x, y, yaw), score, runner_up)
 
@@ -111,26 +126,18 @@ def _splat(scores: Singles, points: Floats, origin: Floats, cell: float, blur: f
 
 
 @njit(cache=True)
-def _block_maxima(scores: Singles, block: int) -> Singles:
-    """The maximum over rows [r, r + block) and columns [c, c + block), separably."""
-    rows, cols = scores.shape
-    across = np.zeros_like(scores)
+def _merge(fine: Singles, coarse: Singles, reach: int) -> None:
+    """The next level: the maximum of four cells of the finer one, ``reach`` apart."""
+    rows, cols = fine.shape
     for r in range(rows):
+        below = min(r + reach, rows - 1)
         for c in range(cols):
-            best = np.float32(0.0)
-            for k in range(c, min(c + block, cols)):
-                best = max(best, scores[r, k])
-            across[r, c] = best
-    out = np.zeros_like(scores)
-    for r in range(rows):
-        for k in range(r, min(r + block, rows)):
-            for c in range(cols):
-                out[r, c] = max(out[r, c], across[k, c])
-    return out
+            right = min(c + reach, cols - 1)
+            coarse[r, c] = max(max(fine[r, c], fine[r, right]), max(fine[below, c], fine[below, right]))
 
 
 @njit(cache=True)
-def _total(grid: Singles, rows: Ints, cols: Ints, dr: int, dc: int) -> float:
+def _total(grid: Singles, rows: Ints32, cols: Ints32, dr: int, dc: int) -> float:
     total = 0.0
     for i in range(rows.shape[0]):
         r, c = rows[i] + dr, cols[i] + dc
@@ -141,23 +148,26 @@ def _total(grid: Singles, rows: Ints, cols: Ints, dr: int, dc: int) -> float:
 
 @njit(cache=True)
 def _search(
-    scores: Singles,
-    bounds: Singles,
+    pyramid: Singles,
     origin: Floats,
     cell: float,
     points: Floats,
     angles: Floats,
     centre: Floats,
     reach: int,
-    block: int,
     peak_m: float,
     peak_rad: float,
     rivals: float,
+    least: float,
 ) -> tuple[float, float, float, float, float]:
-    count = points.shape[0]
-    side = (2 * reach + block) // block
-    rows, cols = np.empty((angles.shape[0], count), np.int64), np.empty((angles.shape[0], count), np.int64)
-    bound = np.empty(angles.shape[0] * side * side)
+    count, side = points.shape[0], 2 * reach + 1
+    top_level = 0
+    while top_level < pyramid.shape[0] - 1 and 2 ** (top_level + 1) <= reach:
+        top_level += 1
+    rows, cols = np.empty((angles.shape[0], count), np.int32), np.empty((angles.shape[0], count), np.int32)
+    heap = [(0.0, 0, 0, 0, 0)]
+    heap.pop()
+    floor = least * count
     for a in range(angles.shape[0]):
         cos, sin = np.cos(angles[a]), np.sin(angles[a])
         for i in range(count):
@@ -165,25 +175,33 @@ def _search(
             y = centre[1] + sin * points[i, 0] + cos * points[i, 1]
             cols[a, i] = int(np.floor((x - origin[0]) / cell)) - reach
             rows[a, i] = int(np.floor((y - origin[1]) / cell)) - reach
-        for k in range(side * side):
-            bound[a * side * side + k] = _total(
-                bounds, rows[a], cols[a], (k // side) * block, (k % side) * block
-            )
-    found = np.zeros((bound.shape[0], 4))  # score, row offset, column offset, rotation: best of each block
-    used, best = 0, -1.0
-    for b in np.argsort(-bound, kind="mergesort"):
-        if bound[b] < rivals * best:
+        for dr in range(0, side, 2**top_level):
+            for dc in range(0, side, 2**top_level):
+                bound = _total(pyramid[top_level], rows[a], cols[a], dr, dc)
+                if bound > floor:
+                    heap.append((-bound, top_level, a, dr, dc))
+    heapq.heapify(heap)
+    found = np.zeros((64, 4))  # score, row offset, column offset, rotation
+    used, best = 0, 0.0
+    while len(heap) > 0:
+        negative, level, a, dr, dc = heapq.heappop(heap)
+        if -negative < max(rivals * best, floor):
             break
-        a, k = b // (side * side), b % (side * side)
-        top, top_r, top_c = -1.0, 0, 0
-        for dr in range((k // side) * block, min((k // side) * block + block, 2 * reach + 1)):
-            for dc in range((k % side) * block, min((k % side) * block + block, 2 * reach + 1)):
-                total = _total(scores, rows[a], cols[a], dr, dc)
-                if total > top:
-                    top, top_r, top_c = total, dr, dc
-        found[used, 0], found[used, 1], found[used, 2], found[used, 3] = top, top_r, top_c, a
-        used += 1
-        best = max(best, top)
+        if level == 0:
+            if used == found.shape[0]:
+                found = np.concatenate((found, np.zeros_like(found)))
+            found[used, 0], found[used, 1], found[used, 2], found[used, 3] = -negative, dr, dc, a
+            used, best = used + 1, max(best, -negative)
+            continue
+        half = 2 ** (level - 1)
+        for k in range(4):
+            r, c = dr + half * (k // 2), dc + half * (k % 2)
+            if r < side and c < side:
+                bound = _total(pyramid[level - 1], rows[a], cols[a], r, c)
+                if bound > max(rivals * best, floor):
+                    heapq.heappush(heap, (-bound, level - 1, a, r, c))
+    if used == 0:
+        return centre[0], centre[1], angles[angles.shape[0] // 2], 0.0, 0.0
     return _peaks(found[:used], cell, reach, angles, centre, count, peak_m, peak_rad)
 
 
@@ -204,6 +222,7 @@ def _peaks(
     for i in range(found.shape[0]):
         away = np.hypot(found[i, 1] - top[1], found[i, 2] - top[2]) * cell
         turned = abs(angles[int(found[i, 3])] - angles[int(top[3])])
+        turned = min(turned, 2.0 * np.pi - turned)
         if (away > peak_m or turned > peak_rad) and found[i, 0] > rival:
             rival = found[i, 0]
     n = max(count, 1)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.types import Imu, Pose2, Scan2D, WheelOdometry
+from explore_bt.types import Imu, Pose2, Scan2D, WheelOdometry, wrap_angle
 from explore_bt_slam.correlative import ScoreGrid, search
 from explore_bt_slam.inertial import InertialFilter
 from explore_bt_slam.options import KissGtsamOptions
@@ -28,6 +28,12 @@ _DOUBTFUL_OVERLAP = 0.5
 _DOUBTFUL_RESIDUAL_M = 0.04
 _SURE_OVERLAP = 0.7
 _CLEARLY_BETTER = 0.15
+_BLIND = np.diag([0.03, 0.03, 0.03]) ** 2
+_BLIND_WINDOW_M = 0.25
+_BLIND_WINDOW_MOST_M = 1.0
+_BLIND_WINDOW_RAD = 0.35
+_BLIND_WINDOW_MOST_RAD = 0.8
+_BLIND_SCORE = 0.3
 _ANCHOR = np.diag([0.003, 0.003, 0.001]) ** 2
 
 
@@ -58,11 +64,12 @@ class FrontEnd:
     """Deskew, prediction, kiss-icp, point-to-line refinement."""
 
     def __init__(self, options: KissGtsamOptions, speed_limit_mps: float) -> None:
-        self._max_range_m = options.max_range
+        self._max_range_m = options.match_range
         self._filter = InertialFilter(speed_limit_mps)
         self._kiss = KissRegistration(options.voxel)
         self._points = np.zeros((0, 2))
         self._surfels = SurfelMap((0.0, 0.0), 1.0)
+        self._grid: ScoreGrid | None = None
 
     @property
     def motion(self) -> Pose2:
@@ -103,11 +110,15 @@ class FrontEnd:
         """Lay a scan into the local map; ``last`` is the pose of the scan before, ``map`` frame."""
         self._filter.advance_to(scan.stamp_s)
         self._filter.roll()
+        if self._filter.is_blind:
+            self._filter.loosen(_BLIND)
         trail, prediction = self._filter.trail, last.compose(self._filter.motion)
         covariance = self._filter.covariance
         points = deskew(scan, trail, self._max_range_m).points
         if min(points.shape[0], self._surfels.count_near(prediction.xy, self._max_range_m)) < _FEWEST_POINTS:
             return self._carried(scan, prediction)
+        if self._filter.is_blind and self._points.shape[0]:
+            prediction = self._guessed(points, last, prediction)
         found = self._refine(points, self._kiss.align(points, prediction), prediction, covariance)
         if found.overlap < _DOUBTFUL_OVERLAP or found.residual_m > _DOUBTFUL_RESIDUAL_M:
             sought = self._searched(points, prediction, covariance)
@@ -131,6 +142,7 @@ class FrontEnd:
             surfels: the same as line pieces.
         """
         self._points = points
+        self._grid = None
         self._kiss.rebuild(points)
         self._surfels = surfels
         self._filter.anchor(_ANCHOR)
@@ -147,8 +159,35 @@ class FrontEnd:
         """A doubtful match is sought again, by correlation and without the prediction's word."""
         window_m = min(3.0 * math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1])) + 0.3, 1.0)
         window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.2, 0.5)
-        match = search(ScoreGrid(self._points, 0.5), points[::3], prior, window_m, window_rad, rivals=1.0)
+        match = search(self._scores(), _few(points), prior, window_m, window_rad, rivals=1.0)
         return self._refine(points, match.pose, match.pose, np.eye(3))
+
+    def _guessed(self, points: NDArray[np.float64], last: Pose2, prediction: Pose2) -> Pose2:
+        """Where a search about "stands still" and "goes on as before" lays the scan, if anywhere.
+
+        With nothing but a lidar at 5 Hz the robot may have begun a turn since the last scan, and some
+        loggers' stamps jitter by more than the time between scans.
+        """
+        moved_m = last.distance_to(prediction)
+        turned = wrap_angle(prediction.yaw_rad - last.yaw_rad)
+        middle = Pose2(
+            0.5 * (last.x + prediction.x), 0.5 * (last.y + prediction.y), last.yaw_rad + 0.5 * turned
+        )
+        match = search(
+            self._scores(),
+            _few(points),
+            middle,
+            min(0.5 * moved_m + _BLIND_WINDOW_M, _BLIND_WINDOW_MOST_M),
+            min(0.5 * abs(turned) + _BLIND_WINDOW_RAD, _BLIND_WINDOW_MOST_RAD),
+            rivals=1.0,
+            least=_BLIND_SCORE,
+        )
+        return match.pose if match.score > 0.0 else prediction
+
+    def _scores(self) -> ScoreGrid:
+        if self._grid is None:
+            self._grid = ScoreGrid(self._points, 0.5)
+        return self._grid
 
     def _carried(self, scan: Scan2D, prediction: Pose2) -> Registered:
         """Nothing here can be matched, as in the middle of a hall: the IMU carries the pose a while."""
@@ -168,6 +207,11 @@ class FrontEnd:
         covariance = self._filter.covariance
         self._filter.correct(self._filter.motion, covariance)
         return sweep, covariance
+
+
+def _few(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """About 100 of (N, 2) points, evenly over the sweep."""
+    return points[:: max(points.shape[0] // 100, 1)]
 
 
 def _inverse(matrix: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -22,6 +22,11 @@ from explore_bt_slam.trail import Trail
 __all__ = ["InertialFilter", "InertialNoise"]
 
 _IMU_SILENCE_S = 0.1
+_SPAN_GAIN = 0.1
+_WHEEL_FLOOR = np.array([0.01, 0.01, 0.005])
+_WHEEL_SHARE = np.array([[0.1, 0.02], [0.1, 0.02], [0.05, 0.1]])
+"""Standard deviations of a step by the wheels: x, y (m), yaw (rad); what is always there, and per metre and
+per radian."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +71,8 @@ class InertialFilter:
         self._imu_s = -math.inf
         self._imu = (0.0, 0.0, 0.0)
         self._odometry: WheelOdometry | None = None
+        self._wheels_s = -math.inf
+        self._span_s = 0.0
         self._times: list[float] = []
         self._poses: list[NDArray[np.float64]] = []
 
@@ -73,6 +80,11 @@ class InertialFilter:
     def time_s(self) -> float | None:
         """How far the prediction reaches; None before the first measurement."""
         return self._time_s
+
+    @property
+    def is_blind(self) -> bool:
+        """Neither IMU nor wheels speak: that the motion goes on as it was is all there is."""
+        return self._time_s is None or self._time_s - max(self._imu_s, self._wheels_s) > _IMU_SILENCE_S
 
     @property
     def motion(self) -> Pose2:
@@ -107,13 +119,16 @@ class InertialFilter:
         self._imu = sample
 
     def take_odometry(self, odometry: WheelOdometry) -> None:
-        """Let the wheels correct the velocity."""
+        """Let the wheels correct the velocity; while no IMU is heard they are the prediction itself."""
         last, self._odometry = self._odometry, odometry
-        if last is None or not 0.0 < odometry.stamp_s - last.stamp_s < 1.0:
+        if last is None or odometry.stamp_s <= last.stamp_s:
             return
-        step = last.T_odom_base.between(odometry.T_odom_base)
-        measured = np.array([step.x, step.y]) / (odometry.stamp_s - last.stamp_s)
-        self._measure_velocity(slice(3, 5), measured, self._noise.odometry)
+        step, span_s = last.T_odom_base.between(odometry.T_odom_base), odometry.stamp_s - last.stamp_s
+        if odometry.stamp_s - self._imu_s > _IMU_SILENCE_S:
+            self._roll_on(step, span_s, odometry.stamp_s)
+        elif span_s < 1.0:
+            measured = np.array([step.x, step.y]) / span_s
+            self._measure_velocity(slice(3, 5), measured, self._noise.odometry)
 
     def roll(self) -> None:
         """A robot on wheels does not slide sideways (the paper's unicycle), nor go faster than it can."""
@@ -173,7 +188,9 @@ class InertialFilter:
         self._covariance = 0.5 * (turned + turned.T)
         span_s = self._times[-1] - self._times[0]
         if span_s > 0.0:
-            self._yaw_rate_rps = motion.yaw_rad / span_s
+            # stamps of some loggers jitter down to a millisecond: such a span says nothing about a rate
+            self._span_s += _SPAN_GAIN * (span_s - self._span_s) if self._span_s else span_s
+            self._yaw_rate_rps = motion.yaw_rad / max(span_s, self._span_s)
         self._restart()
 
     def distrust(self) -> NDArray[np.float64]:
@@ -191,6 +208,35 @@ class InertialFilter:
         self._covariance[:3, :] = 0.0
         self._covariance[:, :3] = 0.0
         self._covariance[:3, :3] = covariance
+
+    def _roll_on(self, step: Pose2, span_s: float, stamp_s: float) -> None:
+        """Move by what the wheels did, except for the time that the prediction has covered already."""
+        now_s = self._time_s if self._time_s is not None else stamp_s - span_s
+        if self._time_s is None:
+            self._begin(now_s)
+        share = min(max((stamp_s - now_s) / span_s, 0.0), 1.0)
+        if share == 0.0:
+            return
+        moved = np.array([step.x, step.y, step.yaw_rad]) * share
+        here = self.motion
+        there = here.compose(Pose2(*moved.tolist()))
+        length_turn = np.array([math.hypot(moved[0], moved[1]), abs(moved[2])])
+        F, spread = np.eye(8), np.zeros((8, 8))
+        F[0, 2], F[1, 2] = here.y - there.y, there.x - here.x
+        F[3:5, 3:5] = 0.0
+        spread[:3, :3] = np.diag((_WHEEL_FLOOR * share + _WHEEL_SHARE @ length_turn) ** 2)
+        spread[3:5, 3:5] = np.eye(2) * self._noise.odometry**2
+        self._covariance = F @ self._covariance @ F.T + spread
+        self._pose = np.array([there.x, there.y, self._pose[2] + moved[2]])
+        self._velocity = np.array([step.x, step.y]) / span_s
+        self._yaw_rate_rps = step.yaw_rad / span_s
+        self._wheels_s = self._time_s = stamp_s
+        self._times.append(stamp_s)
+        self._poses.append(self._pose.copy())
+
+    def loosen(self, spread: NDArray[np.float64]) -> None:
+        """The prediction is less sure than the clock makes it: add (3, 3) to the pose's covariance."""
+        self._covariance[:3, :3] += spread
 
     def _measure_velocity(self, part: slice, measured: NDArray[np.float64], sigma_mps: float) -> None:
         P = self._covariance

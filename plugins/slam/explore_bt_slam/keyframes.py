@@ -26,6 +26,16 @@ class Keyframe:
     normals: NDArray[np.float64]
     driven_m: float
 
+    def within(self, reach_m: float) -> Keyframe:
+        """The same without points farther off."""
+        near = np.hypot(self.points[:, 0], self.points[:, 1]) <= reach_m
+        return Keyframe(self.stamp_s, self.points[near], self.normals[near], self.driven_m)
+
+    @property
+    def reach_m(self) -> float:
+        """No point lies farther off."""
+        return float(np.hypot(self.points[:, 0], self.points[:, 1]).max(initial=0.0))
+
 
 @dataclass(frozen=True, slots=True)
 class KeyframeRule:

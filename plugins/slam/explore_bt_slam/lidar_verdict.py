@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
-from explore_bt_slam.closures import neighbourhood
 from explore_bt_slam.keyframes import Keyframe
-from explore_bt_slam.local_map import gather_surfels
+from explore_bt_slam.local_map import gather_surfels, stretch_about
 from explore_bt_slam.point_to_line import Alignment, align
 from explore_bt_slam.pose_graph import Edge
 from explore_bt_slam.sight_match import SightMatch
@@ -75,7 +74,7 @@ def _laid_on(
     information: NDArray[np.float64],
 ) -> Alignment:
     """One keyframe's scan on the map about another, held at ``guess`` with (3, 3) ``information``."""
-    chosen = neighbourhood(keyframes, place)
+    chosen = stretch_about(keyframes, place, 2.0)
     surfels = gather_surfels(keyframes, poses, chosen, guess.xy, _HALF_SIDE_M)
     return align(keyframes[scan].points, keyframes[scan].normals, surfels, guess, guess, information)
 

@@ -11,7 +11,7 @@ from explore_bt.types import Pose2
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.surfels import SurfelMap
 
-__all__ = ["gather_points", "gather_surfels", "trusted_neighbours"]
+__all__ = ["gather_points", "gather_surfels", "stretch_about", "trusted_neighbours"]
 
 _RECENT = 12
 _MOST = 60
@@ -39,6 +39,17 @@ def trusted_neighbours(
     chosen = np.flatnonzero(wanted)
     nearest = chosen[np.argsort(distance[chosen], kind="stable")][:_MOST]
     return sorted(int(index) for index in nearest)
+
+
+def stretch_about(keyframes: Sequence[Keyframe], middle: int, half_m: float) -> list[int]:
+    """The keyframes driven through within ``half_m`` of way before and after one of them."""
+    driven = keyframes[middle].driven_m
+    most = round(4.0 * half_m)
+    return [
+        index
+        for index in range(max(middle - most, 0), min(middle + most + 1, len(keyframes)))
+        if abs(keyframes[index].driven_m - driven) <= half_m
+    ]
 
 
 def gather_points(

@@ -44,11 +44,12 @@ class Mapper:
         self._drawn_at: tuple[Pose2, float] | None = None
         self._kept_at: Pose2 | None = None
         self._keyframes = np.zeros((0, 3))
+        self._moved_to: NDArray[np.float64] | None = None
 
     @property
     def revision(self) -> int:
-        """See ``Canvas.revision``."""
-        return self._canvas.revision
+        """See ``Canvas.revision``; a redraw that is due counts as done."""
+        return self._canvas.revision + (self._moved_to is not None)
 
     @property
     def kept(self) -> list[KeptSweep]:
@@ -70,17 +71,21 @@ class Mapper:
             last, stamp_s = self._drawn_at
             if not apart(last, pose) and sweep.stamp_s - stamp_s < _REFRESH_S:
                 return
-        self._canvas.draw(sweep, pose)
+        if self._moved_to is None:
+            self._canvas.draw(sweep, pose)
         self._drawn_at = (pose, sweep.stamp_s)
         if self._kept_at is None or apart(self._kept_at, pose):
             self._kept.append(KeptSweep(keyframe, relative, sweep))
             self._kept_at = pose
 
     def follow(self, keyframes: NDArray[np.float64]) -> None:
-        """The graph's poses, (N, 3): redraw if one has moved by more than 1 cm or 0.1° since drawn."""
+        """The graph's poses, (N, 3): a redraw is due if one has moved by more than 1 cm or 0.1° since drawn.
+
+        It is done when somebody looks: closures come in rows, and most of their maps nobody ever sees.
+        """
         known = self._keyframes.shape[0]
-        if known and has_moved(self._keyframes, keyframes[:known]):
-            self.redraw(keyframes)
+        if self._moved_to is not None or (known and has_moved(self._keyframes, keyframes[:known])):
+            self._moved_to = keyframes.copy()
         else:
             self._keyframes = np.vstack((self._keyframes, keyframes[known:]))
 
@@ -91,11 +96,12 @@ class Mapper:
             [(kept.sweep, poses[kept.keyframe].compose(kept.relative)) for kept in self._kept]
         )
         self._keyframes = keyframes.copy()
+        self._moved_to = None
         self._drawn_at = None
-        self._kept_at = None
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """The grid's state; the kept sweeps are apart."""
+        self._catch_up()
         return self._canvas.arrays()
 
     def restore(
@@ -105,14 +111,21 @@ class Mapper:
         self._canvas.restore(arrays)
         self._kept = list(kept)
         self._keyframes = keyframes.copy()
+        self._moved_to = None
 
     def grid(self) -> OccupancyGrid:
         """The map as it stands."""
+        self._catch_up()
         return self._canvas.snapshot()
 
     def changed_since(self, revision: int) -> GridWindow | None:
         """See ``Slam.changed_since``."""
+        self._catch_up()
         return self._canvas.changed_since(revision)
+
+    def _catch_up(self) -> None:
+        if self._moved_to is not None:
+            self.redraw(self._moved_to)
 
 
 def apart(a: Pose2, b: Pose2) -> bool:

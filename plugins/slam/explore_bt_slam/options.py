@@ -24,6 +24,7 @@ class KissGtsamOptions(GroundTruthOptions):
 
     keyframe_distance: Length = Field(0.5, gt=0.0, description="a keyframe after driving this far")
     keyframe_angle: Angle = Field(0.5, gt=0.0, description="a keyframe after turning this far")
+    match_range: Length = Field(20.0, gt=0.0, description="returns beyond take no part in matching")
     voxel: Length = Field(0.1, gt=0.0, description="cell of kiss-icp's map")
     loop_closures: bool = Field(True, description="close loops from the lidar")
     camera_closures: bool = Field(True, description="close loops from RGB-D images, if there are any")

@@ -16,7 +16,7 @@ from explore_bt_slam.journal import Journal
 from explore_bt_slam.keyframes import KeyframeRule
 from explore_bt_slam.mapper import Mapper
 from explore_bt_slam.options import KissGtsamOptions
-from explore_bt_slam.scan_check import fault_of
+from explore_bt_slam.scan_check import fault_of, without_body
 from explore_bt_slam.storage import (
     Arrays,
     pack_edges,
@@ -45,13 +45,15 @@ class Pipeline:
         # a driver may overshoot its limit a little
         self.front = FrontEnd(options, 1.1 * context.limits.speed_mps)
         self.camera = Camera() if options.camera_closures else None
-        self.back = BackEnd(options.max_range, options.loop_closures)
+        self.back = BackEnd(options.loop_closures)
+        self._map_range_m = options.max_range
         self.mapper = Mapper(options.resolution, body_radius_m)
         self.journal = Journal()
         self.health = HealthMonitor()
         self._rule = KeyframeRule(options.keyframe_distance, options.keyframe_angle)
         self._use_odometry = options.use_odometry
         self.mapper.begin(start, Pose2.identity())
+        self._body_radius_m = body_radius_m
         self._start = start
         self._keyframe = -1
         self._weak_keyframes = 0
@@ -103,6 +105,7 @@ class Pipeline:
 
     def take_scan(self, scan: Scan2D) -> None:
         """One scan, all the way to the map."""
+        scan = without_body(scan, self._body_radius_m)
         problem = fault_of(scan, self._scan_s)
         if problem:
             self.health.bad(scan.stamp_s, problem)
@@ -190,7 +193,9 @@ class Pipeline:
         self.mapper.follow(self.back.poses)
 
     def _draw(self, sweep: Sweep) -> None:
-        self.mapper.see(sweep, self._keyframe, self.back.pose(self._keyframe), self._relative)
+        self.mapper.see(
+            sweep.cut(self._map_range_m), self._keyframe, self.back.pose(self._keyframe), self._relative
+        )
 
     def _judge(self, registered: Registered) -> None:
         if registered.problem:

@@ -11,12 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
+from explore_bt_slam.point_to_line import Alignment
 
-__all__ = ["Edge", "PoseGraph"]
+__all__ = ["Edge", "PoseGraph", "closure_edge"]
 
 _PRIOR_SIGMAS = np.array([1e-3, 1e-3, 1e-4])
 _CAUCHY_SCALE = 1.0
 _UPDATES_PER_CLOSURE = 1
+_LARGE_M = 0.2
+_SETTLING = 10
 _CREDIBLE = 16.3  # χ² of three degrees of freedom, 99.9 %
 _COMMON = np.diag([0.02, 0.02, 0.01]) ** 2
 
@@ -38,14 +41,27 @@ class Edge:
     is_closure: bool
 
 
+def closure_edge(poses: NDArray[np.float64], old: int, newest: int, found: Alignment) -> Edge:
+    """A scan laid into an old place, as a constraint; a floor stands for what all matches have in common.
+
+    Args:
+        poses: (N, 3) float64 keyframe poses, ``map`` frame.
+        old: the keyframe of the place.
+        newest: the keyframe of the scan.
+        found: where the scan of ``newest`` fits.
+    """
+    cos, sin = math.cos(found.pose.yaw_rad), math.sin(found.pose.yaw_rad)
+    turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    spread = np.linalg.inv(found.information + np.eye(3) * 1e-6)
+    covariance = turn @ spread @ turn.T + np.diag([0.005, 0.005, 0.002]) ** 2
+    return Edge(old, newest, Pose2(*poses[old].tolist()).between(found.pose), covariance, is_closure=True)
+
+
 class PoseGraph:
     """Best poses of all keyframes under all constraints."""
 
     def __init__(self) -> None:
-        parameters = gtsam.ISAM2Params()
-        parameters.setRelinearizeThreshold(1e-3)
-        parameters.relinearizeSkip = 1
-        self._isam = gtsam.ISAM2(parameters)
+        self._isam = gtsam.ISAM2(_parameters())
         self._poses = np.zeros((0, 3))
         self._edges: list[Edge] = []
 
@@ -84,6 +100,23 @@ class PoseGraph:
 
     def restore(self, poses: NDArray[np.float64], edges: Sequence[Edge]) -> None:
         """A saved graph: all keyframes and constraints at once."""
+        factors, values = self._whole(poses, edges)
+        self._isam = gtsam.ISAM2(_parameters())
+        self._isam.update(factors, values)
+        self._edges = list(edges)
+        self._poses = poses.copy()
+
+    def _settle(self) -> None:
+        """After a large move iSAM's one step is not enough: Levenberg–Marquardt over everything."""
+        factors, values = self._whole(self._poses, self._edges)
+        parameters = gtsam.LevenbergMarquardtParams()
+        parameters.setMaxIterations(_SETTLING)
+        settled = gtsam.LevenbergMarquardtOptimizer(factors, values, parameters).optimize()
+        self.restore(np.asarray(gtsam.utilities.extractPose2(settled)), self._edges)
+
+    def _whole(
+        self, poses: NDArray[np.float64], edges: Sequence[Edge]
+    ) -> tuple[gtsam.NonlinearFactorGraph, gtsam.Values]:
         factors, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
         first = Pose2(*map(float, poses[0]))
         factors.add(gtsam.PriorFactorPose2(0, _gtsam(first), gtsam.noiseModel.Diagonal.Sigmas(_PRIOR_SIGMAS)))
@@ -91,9 +124,7 @@ class PoseGraph:
             values.insert(index, gtsam.Pose2(*map(float, pose)))
         for edge in edges:
             factors.add(_factor(edge, edge.is_closure))
-        self._isam.update(factors, values)
-        self._edges = list(edges)
-        self._poses = poses.copy()
+        return factors, values
 
     def close(self, edges: Sequence[Edge]) -> list[Edge]:
         """Put in those closures that the graph finds credible.
@@ -111,8 +142,10 @@ class PoseGraph:
         for _ in range(_UPDATES_PER_CLOSURE):
             self._isam.update()
         self._add(taken, is_robust=True, replaced=indices)
-        self._poses = self._extract()
+        before, self._poses = self._poses, self._extract()
         self._edges.extend(taken)
+        if np.hypot(*(self._poses - before)[:, :2].T).max() > _LARGE_M:
+            self._settle()
         return taken
 
     def surprise(self, edge: Edge) -> float:
@@ -147,6 +180,13 @@ class PoseGraph:
             factors.add(_factor(edge, is_robust))
         result = self._isam.update(factors, gtsam.Values(), list(replaced))
         return list(result.getNewFactorsIndices())
+
+
+def _parameters() -> gtsam.ISAM2Params:
+    parameters = gtsam.ISAM2Params()
+    parameters.setRelinearizeThreshold(1e-3)
+    parameters.relinearizeSkip = 1
+    return parameters
 
 
 def _gtsam(pose: Pose2) -> gtsam.Pose2:

@@ -43,6 +43,17 @@ class Sweep:
         """(M, 2) float64, metres, base frame: the returns in beam order."""
         return self.ends[self.hit].astype(np.float64)
 
+    def cut(self, max_range_m: float) -> Sweep:
+        """The same with farther returns turned into "nothing up to there"."""
+        along = self.ends - self.origins
+        length = np.hypot(along[:, 0], along[:, 1])
+        is_far = length > max_range_m
+        if not is_far.any():
+            return self
+        factor = np.where(is_far, max_range_m / np.maximum(length, 1e-6), 1.0)[:, None]
+        ends = np.asarray(self.origins + factor * along, dtype=np.float32)
+        return Sweep(self.stamp_s, self.origins, ends, self.hit & ~is_far)
+
 
 def deskew(scan: Scan2D, trail: Trail, max_range_m: float) -> Sweep:
     """Move every beam to where the robot was when it was taken.

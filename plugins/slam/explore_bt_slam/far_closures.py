@@ -1,0 +1,252 @@
+"""Closures across large drift: the last metres of way, laid as one piece onto every place in question."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.types import Pose2, wrap_angle
+from explore_bt_slam.consistency import largest_consistent
+from explore_bt_slam.contradiction import seen_through
+from explore_bt_slam.correlative import ScoreGrid, search
+from explore_bt_slam.keyframes import Keyframe
+from explore_bt_slam.local_map import gather_points, gather_surfels, stretch_about
+from explore_bt_slam.point_to_line import align
+from explore_bt_slam.pose_graph import Edge, closure_edge
+
+__all__ = ["FarClosureFinder", "FarRule", "Sighting"]
+
+_CELL_M = 0.1
+_QUERY_POINTS = 150
+_OTHER_POSE_M = 1.0
+_OTHER_POSE_RAD = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class FarRule:
+    """What may become a closure across large drift.
+
+    Attributes:
+        driven_m: at least this much way lies between a place and the robot.
+        spacing_m: way between the places tried, and between two tries.
+        stretch_m: way whose scans make up a place, and the piece that is laid onto it.
+        reach_m: farther points take no part.
+        window_m: the robot is sought up to this far from a place's middle.
+        sigmas: places within so many standard deviations are tried.
+        score: least share of the piece that lies on the place.
+        ambiguity: another pose, anywhere, with more than this share of the best score: "cannot tell".
+        overlap: least share of the newest scan that fits the place's lines.
+        seen_through: largest share of the place's points that the scan looks right through.
+        agreeing, span_m: so many closures over so much way must say the same about the drift.
+    """
+
+    driven_m: float = 10.0
+    spacing_m: float = 1.0
+    stretch_m: float = 5.0
+    reach_m: float = 12.0
+    window_m: float = 3.0
+    sigmas: float = 3.5
+    score: float = 0.55
+    ambiguity: float = 0.87
+    overlap: float = 0.65
+    seen_through: float = 0.12
+    agreeing: int = 3
+    span_m: float = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """The piece fits here: ``pose`` is ``T_map_newest`` as the place sees it."""
+
+    place: int
+    pose: Pose2
+    score: float
+
+
+class FarClosureFinder:
+    """Seeks the robot among places whose position relative to it is badly known.
+
+    A closure is only believed when a whole row of them agrees (pairwise consistency, Mangelson et al.
+    2018) and when no other place explains the piece nearly as well.
+    """
+
+    def __init__(self, rule: FarRule | None = None) -> None:
+        self._rule = rule or FarRule()
+        self._grids: dict[tuple[int, int], ScoreGrid] = {}
+        self._pending: list[Edge] = []
+        self._tried_m = -math.inf
+
+    def find(
+        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], covariances: NDArray[np.float64]
+    ) -> list[Edge]:
+        """Closures of the last few keyframes with places far along the graph; all of one opinion.
+
+        Args:
+            keyframes: all of them.
+            poses: (N, 3) float64, theirs.
+            covariances: (N, 3, 3) float64 relative to the newest, see ``relative_covariances``.
+        """
+        newest = len(keyframes) - 1
+        if keyframes[newest].driven_m - self._tried_m < self._rule.spacing_m:
+            return []
+        places = self._places(keyframes, poses, covariances)
+        if not places:
+            return []
+        self._tried_m = keyframes[newest].driven_m
+        turns = {p: min(self._rule.sigmas * math.sqrt(covariances[p, 2, 2]) + 0.1, math.pi) for p in places}
+        sighting = self.seek(keyframes, poses, newest, turns)
+        edge = None if sighting is None else self._verified(keyframes, poses, newest, sighting)
+        return [] if edge is None else self._agreed(edge, keyframes, poses, covariances)
+
+    def seek(
+        self,
+        keyframes: Sequence[Keyframe],
+        poses: NDArray[np.float64],
+        newest: int,
+        turns: dict[int, float],
+    ) -> Sighting | None:
+        """The one place that the last metres of way fit; None if there is none, or more than one.
+
+        Args:
+            keyframes: all of them.
+            poses: (N, 3) float64, theirs.
+            newest: what is sought.
+            turns: for each place to try, how far the heading may be off, rad.
+        """
+        rule = self._rule
+        piece = _thinned(self._piece(keyframes, poses, newest), _QUERY_POINTS)
+        best, others = 0.0, []
+        for place, turn_rad in turns.items():
+            here = Pose2(*poses[place].tolist())
+            centre = Pose2(0.0, 0.0, wrap_angle(float(poses[newest, 2]) - here.yaw_rad))
+            match = search(
+                self._grid(keyframes, poses, place),
+                piece,
+                centre,
+                rule.window_m,
+                turn_rad,
+                rivals=rule.ambiguity,
+                least=max(rule.score, rule.ambiguity * best),
+            )
+            if match.score > 0.0:
+                best = max(best, match.score)
+                others.append(Sighting(place, here.compose(match.pose), match.score))
+                if match.runner_up > rule.ambiguity * best:
+                    others.append(Sighting(place, Pose2(np.inf, np.inf, 0.0), match.runner_up))
+        return _unrivalled(others, rule.ambiguity)
+
+    def _places(
+        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], covariances: NDArray[np.float64]
+    ) -> list[int]:
+        """Keyframes, one every few metres of way, where the robot may be but is not known to be."""
+        newest, rule = len(keyframes) - 1, self._rule
+        off = poses[:, :2] - poses[newest, :2]
+        chosen: list[int] = []
+        last_m = -math.inf
+        for index in range(newest):
+            driven_m = keyframes[index].driven_m
+            if keyframes[newest].driven_m - driven_m < rule.driven_m:
+                break
+            if driven_m - last_m < 2.0 * rule.spacing_m:
+                continue
+            spread = covariances[index, :2, :2]
+            if np.isfinite(spread).all() and _can_be_here(off[index], spread, rule):
+                chosen.append(index)
+                last_m = driven_m
+        return chosen
+
+    def _piece(
+        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], newest: int
+    ) -> NDArray[np.float64]:
+        """(N, 2): what was seen over the last metres, from the newest keyframe."""
+        since_m = keyframes[newest].driven_m - self._rule.stretch_m
+        recent = [k for k in range(newest, max(newest - 16, -1), -1) if keyframes[k].driven_m >= since_m]
+        return _from(poses[newest], gather_points(keyframes, poses, recent), self._rule.reach_m)
+
+    def _grid(self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], place: int) -> ScoreGrid:
+        """A place as it looks from its middle keyframe; hardly changes when the graph moves."""
+        stretch = stretch_about(keyframes, place, self._rule.stretch_m)
+        key = (place, stretch[-1])
+        if key not in self._grids:
+            points = _from(poses[place], gather_points(keyframes, poses, stretch), self._rule.reach_m + 3.0)
+            self._grids[key] = ScoreGrid(_thinned(points, 4000), 0.5, _CELL_M)
+        return self._grids[key]
+
+    def _verified(
+        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], newest: int, sighting: Sighting
+    ) -> Edge | None:
+        """The sighting as a closure, once the newest scan fits the place's lines and passes no wall."""
+        rule, scan = self._rule, keyframes[newest]
+        stretch = stretch_about(keyframes, sighting.place, rule.stretch_m)
+        cloud = gather_points(keyframes, poses, stretch)
+        near = cloud[np.hypot(*(cloud - np.array(sighting.pose.xy)).T) <= rule.reach_m]
+        if near.shape[0] == 0:
+            return None
+        fine = search(ScoreGrid(near, 0.3), _thinned(scan.points, 120), sighting.pose, 0.25, 0.05, rivals=1.0)
+        surfels = gather_surfels(keyframes, poses, stretch, fine.pose.xy, rule.reach_m)
+        found = align(scan.points, scan.normals, surfels, fine.pose, fine.pose, np.eye(3) * 1e-3)
+        is_sound = (
+            found.overlap >= rule.overlap
+            and found.residual_m <= 0.05
+            and found.weakest_sigma_m <= 0.03
+            and seen_through(near, scan.points, found.pose) <= rule.seen_through
+        )
+        return closure_edge(poses, sighting.place, newest, found) if is_sound else None
+
+    def _agreed(
+        self,
+        edge: Edge,
+        keyframes: Sequence[Keyframe],
+        poses: NDArray[np.float64],
+        covariances: NDArray[np.float64],
+    ) -> list[Edge]:
+        """All closures that agree with the newest, once they are many enough; else wait."""
+        rule = self._rule
+        since_m = keyframes[edge.b].driven_m - 6.0 * rule.span_m
+        self._pending = [each for each in self._pending if keyframes[each.b].driven_m >= since_m] + [edge]
+        agreed = largest_consistent(self._pending, poses, covariances)
+        span_m = max(keyframes[each.b].driven_m for each in agreed) - min(
+            keyframes[each.b].driven_m for each in agreed
+        )
+        is_majority = 2 * len(agreed) > len(self._pending)
+        if len(agreed) < rule.agreeing or span_m < rule.span_m or not is_majority:
+            return []
+        self._pending = []
+        return agreed
+
+
+def _can_be_here(off: NDArray[np.float64], spread: NDArray[np.float64], rule: FarRule) -> bool:
+    """Badly known, and not too far off for how badly."""
+    worst = float(np.linalg.eigvalsh(spread)[-1])
+    if 3.0 * math.sqrt(worst) <= 0.5:
+        return False
+    wide = spread + np.eye(2) * (0.5 * rule.window_m) ** 2
+    return float(off @ np.linalg.solve(wide, off)) <= rule.sigmas**2
+
+
+def _unrivalled(sightings: Iterable[Sighting], ambiguity: float) -> Sighting | None:
+    ranked = sorted(sightings, key=lambda each: -each.score)
+    for other in ranked[1:]:
+        is_other = (
+            other.pose.distance_to(ranked[0].pose) > _OTHER_POSE_M
+            or abs(wrap_angle(other.pose.yaw_rad - ranked[0].pose.yaw_rad)) > _OTHER_POSE_RAD
+        )
+        if is_other and other.score > ambiguity * ranked[0].score:
+            return None
+    return ranked[0] if ranked and math.isfinite(ranked[0].pose.x) else None
+
+
+def _from(pose: NDArray[np.float64], points: NDArray[np.float64], reach_m: float) -> NDArray[np.float64]:
+    seen = Pose2(*pose.tolist()).inverse().apply(points)
+    return seen[np.hypot(seen[:, 0], seen[:, 1]) <= reach_m]
+
+
+def _thinned(points: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """One point a 20 cm cell, and about ``count`` of them, spread evenly over the list."""
+    _, first = np.unique(np.floor(points / 0.2).astype(np.int64), axis=0, return_index=True)
+    chosen = np.sort(first)
+    return points[chosen[:: max(len(chosen) // count, 1)]]

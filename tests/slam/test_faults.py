@@ -1,0 +1,91 @@
+"""Bad data: the pose stays within 10 cm, or health says that it may not."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterable, Iterator
+
+import numpy as np
+import pytest
+from explore_bt_slam import KissGtsam
+
+from explore_bt.interfaces import RobotContext
+from explore_bt.testing.slam_room import Room, ScriptedRobot
+from explore_bt.types import Health, Measurement, Pose2, Scan2D, wrap_angle
+
+Fault = Callable[[Scan2D, np.random.Generator], list[Scan2D]]
+
+
+def dropout(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
+    """Two seconds without a scan."""
+    return [] if 4.0 < scan.stamp_s <= 6.0 else [scan]
+
+
+def invalid(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
+    """Three beams in ten are NaN."""
+    ranges = np.where(rng.random(scan.ranges_m.shape[0]) < 0.3, np.nan, scan.ranges_m)
+    return [dataclasses.replace(scan, ranges_m=ranges.astype(np.float32))]
+
+
+def backwards(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
+    """Every tenth scan claims to be half a second old."""
+    is_late = round(10.0 * scan.stamp_s) % 10 == 0
+    return [dataclasses.replace(scan, stamp_s=scan.stamp_s - 0.5) if is_late else scan]
+
+
+def twice(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
+    """Every scan comes again, with the same stamp and other noise."""
+    noise = rng.normal(0.0, 0.01, scan.ranges_m.shape[0])
+    return [scan, dataclasses.replace(scan, ranges_m=(scan.ranges_m + noise).astype(np.float32))]
+
+
+def half_blocked(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
+    """Something stands before the left half of the lidar from the third second on."""
+    is_blocked = (scan.angles_rad > 0.0) & (scan.stamp_s > 3.0)
+    return [dataclasses.replace(scan, ranges_m=np.where(is_blocked, 0.2, scan.ranges_m).astype(np.float32))]
+
+
+def crowd(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
+    """Three people walk round the robot, in a fifth of the view."""
+    ranges = scan.ranges_m.copy()
+    for k in range(3):
+        ahead = 2.0 * math.pi * k / 3.0 + 0.5 * scan.stamp_s
+        turn = np.array([abs(wrap_angle(float(angle) - ahead)) for angle in scan.angles_rad])
+        near = 0.8 + 0.3 * math.sin(scan.stamp_s + k)
+        ranges = np.where(turn < 0.21, np.minimum(ranges, near), ranges)
+    return [dataclasses.replace(scan, ranges_m=ranges.astype(np.float32))]
+
+
+def course(robot: ScriptedRobot) -> Iterator[Measurement]:
+    for speed_mps, turn_rps, duration_s in (
+        (0.3, 0.25, 4.0),
+        (0.2, 0.6, 4.0),
+        (0.3, 0.0, 2.0),
+        (0.0, 0.8, 3.0),
+    ):
+        yield from robot.drive(speed_mps, turn_rps, duration_s)
+
+
+def faulty(measured: Iterable[Measurement], fault: Fault) -> Iterator[Measurement]:
+    rng = np.random.default_rng(7)
+    for each in measured:
+        yield from fault(each, rng) if isinstance(each, Scan2D) else [each]
+
+
+@pytest.mark.parametrize("with_imu", [True, False])
+@pytest.mark.parametrize("fault", [dropout, invalid, backwards, twice, half_blocked, crowd])
+def test_bad_data_costs_no_more_than_ten_centimetres_unless_health_says_so(
+    fault: Fault, with_imu: bool
+) -> None:
+    robot = ScriptedRobot(Room.furnished(), Pose2(-0.6, -0.5, 0.0))
+    slam = KissGtsam(KissGtsam.Options())
+    slam.setup(RobotContext(start=robot.pose))
+    for measurement in faulty(course(robot), fault):
+        if isinstance(measurement, Scan2D) or with_imu:
+            slam.update(measurement)
+        if isinstance(measurement, Scan2D) and measurement.stamp_s == robot.time_s:
+            estimate = slam.estimate()
+            off_m = estimate.T_map_base.distance_to(robot.pose)
+            assert off_m < 0.10 or estimate.health is not Health.OK, measurement.stamp_s
+    assert slam.estimate().T_map_base.distance_to(robot.pose) < 0.10
