@@ -261,3 +261,45 @@ def test_a_second_session_closes_loops_with_the_first(tmp_path: Path) -> None:
 def test_ground_truth_without_a_simulator_says_what_to_use() -> None:
     with pytest.raises(PluginError, match="use kiss_gtsam"):
         GroundTruthSlam(GroundTruthSlam.Options()).setup(RobotContext())
+
+
+def flat() -> Room:
+    """Three rooms in a row with doors between, and furniture at odd places."""
+    walls = boxes((-6.0, -2.5, 6.0, 2.5), (-5.0, 1.5, -3.2, 2.5), (3.9, -2.5, 6.0, -1.6), (0.4, 1.9, 1.9, 2.5))
+    doors = [[x, y0, x, y1] for x in (-2.0, 2.5) for y0, y1 in ((-2.5, -0.6), (0.5, 2.5))]
+    pillars = [[-4.9, -1.7, 0.2], [-2.9, -1.1, 0.12], [-0.9, -1.6, 0.25], [1.7, -1.2, 0.1], [4.6, 1.3, 0.3]]
+    return Room(np.vstack((walls.segments, doors)), np.array(pillars))
+
+
+def through_the_flat(robot: ScriptedRobot) -> Iterable[Measurement]:
+    yield from robot.drive(0.5, 0.0, 17.0)
+    yield from robot.drive(0.0, 1.0, math.pi)
+    yield from robot.drive(0.5, 0.0, 17.0)
+
+
+def test_a_robot_set_down_elsewhere_finds_itself_in_the_map() -> None:
+    robot = ScriptedRobot(flat(), Pose2(-4.2, 0.0, 0.0))
+    slam = ready(robot)
+    drive(slam, through_the_flat(robot))
+    moved = ScriptedRobot(flat(), Pose2(3.5, 0.6, 2.0), seed=1, time_s=robot.time_s)
+    drive(slam, moved.drive(0.0, 0.3, 0.5))
+    assert slam.estimate().health is not Health.OK
+    drive(slam, moved.drive(0.0, 0.3, 6.0))
+    assert slam.estimate().health is Health.OK
+    assert slam.estimate().T_map_base.distance_to(moved.pose) < 0.10
+    drive(slam, moved.drive(0.0, -0.4, 3.0))
+    assert slam.estimate().T_map_base.distance_to(moved.pose) < 0.10
+
+
+def test_a_robot_woken_elsewhere_in_a_saved_map_finds_itself(tmp_path: Path) -> None:
+    robot = ScriptedRobot(flat(), Pose2(-4.2, 0.0, 0.0))
+    first = ready(robot)
+    drive(first, through_the_flat(robot))
+    first.save(tmp_path)
+    woken = ScriptedRobot(flat(), Pose2(3.5, 0.6, 2.0), seed=1)
+    second = KissGtsam(KissGtsam.Options())
+    second.setup(RobotContext())
+    second.load(tmp_path)
+    drive(second, woken.drive(0.0, 0.3, 8.0))
+    assert second.estimate().health is Health.OK
+    assert second.estimate().T_map_base.distance_to(woken.pose) < 0.10

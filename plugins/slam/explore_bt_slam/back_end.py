@@ -15,6 +15,7 @@ from explore_bt_slam.graph_distance import relative_covariances
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.local_map import gather_points, gather_surfels, trusted_neighbours
 from explore_bt_slam.pose_graph import Edge, PoseGraph
+from explore_bt_slam.relocaliser import Relocaliser
 from explore_bt_slam.sight import Sight
 from explore_bt_slam.surfels import SurfelMap, normals_of
 from explore_bt_slam.sweep import Sweep
@@ -45,6 +46,7 @@ class BackEnd:
         self._graph = PoseGraph()
         self._finder = ClosureFinder()
         self._far_finder = FarClosureFinder()
+        self._relocaliser = Relocaliser(self._far_finder)
         self._closures = 0
         self._covariances = np.zeros((0, 3, 3))
         self.looks = CameraClosures()
@@ -115,6 +117,23 @@ class BackEnd:
         half_side_m = self._keyframes[keyframe].reach_m + 2.0
         surfels = gather_surfels(self._keyframes, self.poses, chosen, self.pose(keyframe).xy, half_side_m)
         return gather_points(self._keyframes, self.poses, chosen), surfels
+
+    def recognise(self, sweep: Sweep, believed: Pose2) -> Pose2 | None:
+        """Where a lost robot is, if its scans say so clearly; called scan by scan while it is lost.
+
+        Args:
+            sweep: what it sees.
+            believed: where dead reckoning puts it; only its changes count.
+        """
+        points = sweep.points
+        scan = Keyframe(sweep.stamp_s, points, normals_of(points), 0.0)
+        found = self._relocaliser.step(self._keyframes, self.poses, scan, believed)
+        return None if found is None else found[1]
+
+    def enter(self, keyframe: int) -> None:
+        """The robot is at an old keyframe now; errors count from there."""
+        self._relocaliser.forget()
+        self._measure(keyframe)
 
     def restore(self, keyframes: list[Keyframe], poses: NDArray[np.float64], edges: list[Edge]) -> None:
         """A saved state."""

@@ -15,7 +15,7 @@ from explore_bt_slam.contradiction import seen_through
 from explore_bt_slam.correlative import ScoreGrid, search
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.local_map import gather_points, gather_surfels, stretch_about
-from explore_bt_slam.point_to_line import align
+from explore_bt_slam.point_to_line import Alignment, align
 from explore_bt_slam.pose_graph import Edge, closure_edge
 
 __all__ = ["FarClosureFinder", "FarRule", "Sighting"]
@@ -60,7 +60,7 @@ class FarRule:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """The piece fits here: ``pose`` is ``T_map_newest`` as the place sees it."""
+    """The piece fits here: ``pose`` is ``T_map_base`` as the place sees it."""
 
     place: int
     pose: Pose2
@@ -98,35 +98,42 @@ class FarClosureFinder:
             return []
         self._tried_m = keyframes[newest].driven_m
         turns = {p: min(self._rule.sigmas * math.sqrt(covariances[p, 2, 2]) + 0.1, math.pi) for p in places}
-        sighting = self.seek(keyframes, poses, newest, turns)
-        edge = None if sighting is None else self._verified(keyframes, poses, newest, sighting)
-        return [] if edge is None else self._agreed(edge, keyframes, poses, covariances)
+        piece = self._piece(keyframes, poses, newest)
+        found = self.sightings(keyframes, poses, piece, float(poses[newest, 2]), turns)
+        best = _unrivalled(found, self._rule.ambiguity)
+        fitted = None if best is None else self._fitted(keyframes, poses, keyframes[newest], best)
+        if best is None or fitted is None:
+            return []
+        edge = closure_edge(poses, best.place, newest, fitted)
+        return self._agreed(edge, keyframes, poses, covariances)
 
-    def seek(
+    def sightings(
         self,
         keyframes: Sequence[Keyframe],
         poses: NDArray[np.float64],
-        newest: int,
+        points: NDArray[np.float64],
+        yaw_rad: float,
         turns: dict[int, float],
-    ) -> Sighting | None:
-        """The one place that the last metres of way fit; None if there is none, or more than one.
+    ) -> list[Sighting]:
+        """Where a piece fits, and what rivals these places have within themselves (at infinity).
 
         Args:
             keyframes: all of them.
             poses: (N, 3) float64, theirs.
-            newest: what is sought.
+            points: (M, 2) float64, metres: the piece, base frame.
+            yaw_rad: heading of the base, as far as it is known.
             turns: for each place to try, how far the heading may be off, rad.
         """
         rule = self._rule
-        piece = _thinned(self._piece(keyframes, poses, newest), _QUERY_POINTS)
-        best, others = 0.0, []
+        piece = _thinned(points[np.hypot(points[:, 0], points[:, 1]) <= rule.reach_m], _QUERY_POINTS)
+        best = 0.0
+        found: list[Sighting] = []
         for place, turn_rad in turns.items():
             here = Pose2(*poses[place].tolist())
-            centre = Pose2(0.0, 0.0, wrap_angle(float(poses[newest, 2]) - here.yaw_rad))
             match = search(
                 self._grid(keyframes, poses, place),
                 piece,
-                centre,
+                Pose2(0.0, 0.0, wrap_angle(yaw_rad - here.yaw_rad)),
                 rule.window_m,
                 turn_rad,
                 rivals=rule.ambiguity,
@@ -134,10 +141,29 @@ class FarClosureFinder:
             )
             if match.score > 0.0:
                 best = max(best, match.score)
-                others.append(Sighting(place, here.compose(match.pose), match.score))
+                found.append(Sighting(place, here.compose(match.pose), match.score))
                 if match.runner_up > rule.ambiguity * best:
-                    others.append(Sighting(place, Pose2(np.inf, np.inf, 0.0), match.runner_up))
-        return _unrivalled(others, rule.ambiguity)
+                    found.append(Sighting(place, Pose2(np.inf, np.inf, 0.0), match.runner_up))
+        return found
+
+    def recognised(
+        self,
+        keyframes: Sequence[Keyframe],
+        poses: NDArray[np.float64],
+        scan: Keyframe,
+        sightings: Sequence[Sighting],
+    ) -> tuple[int, Pose2] | None:
+        """The one place where a scan was taken, and ``T_map_base`` there; None if in doubt.
+
+        Args:
+            keyframes: all of them.
+            poses: (N, 3) float64, theirs.
+            scan: what is to be placed.
+            sightings: of this scan at every place.
+        """
+        best = _unrivalled(sightings, self._rule.ambiguity)
+        found = None if best is None else self._fitted(keyframes, poses, scan, best)
+        return None if best is None or found is None else (best.place, found.pose)
 
     def _places(
         self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], covariances: NDArray[np.float64]
@@ -176,11 +202,11 @@ class FarClosureFinder:
             self._grids[key] = ScoreGrid(_thinned(points, 4000), 0.5, _CELL_M)
         return self._grids[key]
 
-    def _verified(
-        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], newest: int, sighting: Sighting
-    ) -> Edge | None:
-        """The sighting as a closure, once the newest scan fits the place's lines and passes no wall."""
-        rule, scan = self._rule, keyframes[newest]
+    def _fitted(
+        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], scan: Keyframe, sighting: Sighting
+    ) -> Alignment | None:
+        """The sighting refined, if the scan fits the place's lines and looks through no wall."""
+        rule, scan = self._rule, scan.within(self._rule.reach_m)
         stretch = stretch_about(keyframes, sighting.place, rule.stretch_m)
         cloud = gather_points(keyframes, poses, stretch)
         near = cloud[np.hypot(*(cloud - np.array(sighting.pose.xy)).T) <= rule.reach_m]
@@ -195,7 +221,7 @@ class FarClosureFinder:
             and found.weakest_sigma_m <= 0.03
             and seen_through(near, scan.points, found.pose) <= rule.seen_through
         )
-        return closure_edge(poses, sighting.place, newest, found) if is_sound else None
+        return found if is_sound else None
 
     def _agreed(
         self,

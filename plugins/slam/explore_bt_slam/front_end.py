@@ -26,7 +26,7 @@ _OPEN_DIRECTION = "the walls in view leave one direction open, as in a plain cor
 _LEAST_OVERLAP = 0.35
 _DOUBTFUL_OVERLAP = 0.5
 _DOUBTFUL_RESIDUAL_M = 0.04
-_SURE_OVERLAP = 0.7
+_SURE_OVERLAP = 0.6
 _CLEARLY_BETTER = 0.15
 _BLIND = np.diag([0.03, 0.03, 0.03]) ** 2
 _BLIND_WINDOW_M = 0.25
@@ -121,7 +121,11 @@ class FrontEnd:
             prediction = self._guessed(points, last, prediction)
         found = self._refine(points, self._kiss.align(points, prediction), prediction, covariance)
         if found.overlap < _DOUBTFUL_OVERLAP or found.residual_m > _DOUBTFUL_RESIDUAL_M:
-            sought = self._searched(points, prediction, covariance)
+            # where the prediction is wrong by a lurch of the wheels, "stood still" may be nearer
+            sought = max(
+                (self._searched(points, centre, covariance) for centre in (prediction, last)),
+                key=lambda each: each.fitness,
+            )
             is_sure = sought.overlap >= _SURE_OVERLAP and sought.residual_m <= _DOUBTFUL_RESIDUAL_M
             if is_sure and sought.fitness > found.fitness + _CLEARLY_BETTER:
                 found, covariance = sought, self._filter.distrust()

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import RobotContext
-from explore_bt.types import Estimate, Imu, MapStructure, Pose2, RgbdFrame, Scan2D, WheelOdometry
+from explore_bt.types import Estimate, Health, Imu, MapStructure, Pose2, RgbdFrame, Scan2D, WheelOdometry
 from explore_bt_slam.back_end import BackEnd
 from explore_bt_slam.camera import Camera
 from explore_bt_slam.exported_graph import graph_of
@@ -121,6 +121,8 @@ class Pipeline:
             if self._rule.wants(self._relative, registered.overlap):
                 self._make_keyframe(registered)
             self._draw(registered.sweep)
+        elif self.health.state[0] is Health.LOST:
+            self._look_round(registered)
         self.journal.note(scan.stamp_s, self._keyframe, self._relative)
 
     def estimate(self) -> Estimate:
@@ -164,11 +166,7 @@ class Pipeline:
         self.journal.restore(
             arrays["journal_stamps"], arrays["journal_keyframes"], arrays["journal_relatives"]
         )
-        start = start or Pose2(*arrays["last_pose"].tolist())
-        poses = self.back.poses
-        self._keyframe = int(np.argmin(np.hypot(poses[:, 0] - start.x, poses[:, 1] - start.y)))
-        self._relative = self.back.pose(self._keyframe).between(start)
-        self.front.relocate(*self.back.surroundings(self._keyframe))
+        self._enter(start or Pose2(*arrays["last_pose"].tolist()))
 
     def _begin(self, scan: Scan2D) -> None:
         first = self.front.first(scan, self._start)
@@ -191,6 +189,20 @@ class Pipeline:
         self._relative = Pose2.identity()
         self.front.relocate(*self.back.surroundings(self._keyframe))
         self.mapper.follow(self.back.poses)
+
+    def _look_round(self, registered: Registered) -> None:
+        """Lost: perhaps this is a place of the map after all."""
+        found = self.back.recognise(registered.sweep, registered.pose)
+        if found is not None:
+            self._enter(found)
+
+    def _enter(self, pose: Pose2) -> None:
+        """Go on from the keyframe nearest to a pose in the map."""
+        poses = self.back.poses
+        self._keyframe = int(np.argmin(np.hypot(poses[:, 0] - pose.x, poses[:, 1] - pose.y)))
+        self._relative = self.back.pose(self._keyframe).between(pose)
+        self.back.enter(self._keyframe)
+        self.front.relocate(*self.back.surroundings(self._keyframe))
 
     def _draw(self, sweep: Sweep) -> None:
         self.mapper.see(
