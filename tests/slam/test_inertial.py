@@ -81,3 +81,14 @@ def test_without_imu_the_wheels_are_the_prediction_whatever_the_clock_says() -> 
             inertial.correct(inertial.motion, EXACT)
         last = now
     assert not inertial.is_blind
+
+
+def test_a_stalled_odometry_link_is_not_taken_for_a_halt() -> None:
+    inertial = InertialFilter()
+    for step in range(12):
+        stamp_s, heard = 0.2 * step, step if step < 5 else 4 if step < 9 else step
+        inertial.take_odometry(WheelOdometry(stamp_s, Pose2(0.2 * heard, 0.0, 0.0)))
+        inertial.advance_to(stamp_s)
+        if step > 1:
+            assert abs(inertial.motion.x - 0.2) < 0.01
+        inertial.correct(Pose2(0.2 if step else 0.0, 0.0, 0.0), EXACT)

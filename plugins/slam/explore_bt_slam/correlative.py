@@ -43,7 +43,7 @@ class ScoreGrid:
         self.origin_xy = points.min(axis=0) - margin
         shape = np.ceil((points.max(axis=0) + margin - self.origin_xy) / cell_m).astype(np.int64)
         self.pyramid = np.zeros((_LEVELS + 1, int(shape[1]), int(shape[0])), dtype=np.float32)
-        _splat(self.pyramid[0], points, self.origin_xy, cell_m, cell_m)
+        _splat(self.pyramid[0], np.ascontiguousarray(points), self.origin_xy, cell_m, cell_m)
         for level in range(_LEVELS):
             _merge(self.pyramid[level], self.pyramid[level + 1], 2**level)
 
@@ -99,7 +99,7 @@ def search(
         grid.pyramid,
         grid.origin_xy,
         grid.cell_m,
-        points,
+        np.ascontiguousarray(points),
         angles,
         np.array(centre.xy),
         math.ceil(window_m / grid.cell_m),

@@ -23,6 +23,8 @@ __all__ = ["InertialFilter", "InertialNoise"]
 
 _IMU_SILENCE_S = 0.1
 _SPAN_GAIN = 0.1
+_UNDER_WAY_MPS = 0.2
+_UNDER_WAY_RPS = 0.3
 _WHEEL_FLOOR = np.array([0.01, 0.01, 0.005])
 _WHEEL_SHARE = np.array([[0.1, 0.02], [0.1, 0.02], [0.05, 0.1]])
 """Standard deviations of a step by the wheels: x, y (m), yaw (rad); what is always there, and per metre and
@@ -87,6 +89,11 @@ class InertialFilter:
         return self._time_s is None or self._time_s - max(self._imu_s, self._wheels_s) > _IMU_SILENCE_S
 
     @property
+    def _is_under_way(self) -> bool:
+        speed_mps = float(np.hypot(self._velocity[0], self._velocity[1]))
+        return speed_mps > _UNDER_WAY_MPS or abs(self._yaw_rate_rps) > _UNDER_WAY_RPS
+
+    @property
     def motion(self) -> Pose2:
         """Predicted motion since the last registered scan."""
         x, y, yaw = self._pose
@@ -119,8 +126,15 @@ class InertialFilter:
         self._imu = sample
 
     def take_odometry(self, odometry: WheelOdometry) -> None:
-        """Let the wheels correct the velocity; while no IMU is heard they are the prediction itself."""
-        last, self._odometry = self._odometry, odometry
+        """Let the wheels correct the velocity; while no IMU is heard they are the prediction itself.
+
+        A reading that repeats the last one to the bit while the robot was under way is a stalled link, not
+        a halt: the next fresh one then tells about the whole time in between.
+        """
+        last = self._odometry
+        if last is not None and odometry.T_odom_base == last.T_odom_base and self._is_under_way:
+            return
+        self._odometry = odometry
         if last is None or odometry.stamp_s <= last.stamp_s:
             return
         step, span_s = last.T_odom_base.between(odometry.T_odom_base), odometry.stamp_s - last.stamp_s
