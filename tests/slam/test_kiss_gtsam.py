@@ -265,7 +265,9 @@ def test_ground_truth_without_a_simulator_says_what_to_use() -> None:
 
 def flat() -> Room:
     """Three rooms in a row with doors between, and furniture at odd places."""
-    walls = boxes((-6.0, -2.5, 6.0, 2.5), (-5.0, 1.5, -3.2, 2.5), (3.9, -2.5, 6.0, -1.6), (0.4, 1.9, 1.9, 2.5))
+    walls = boxes(
+        (-6.0, -2.5, 6.0, 2.5), (-5.0, 1.5, -3.2, 2.5), (3.9, -2.5, 6.0, -1.6), (0.4, 1.9, 1.9, 2.5)
+    )
     doors = [[x, y0, x, y1] for x in (-2.0, 2.5) for y0, y1 in ((-2.5, -0.6), (0.5, 2.5))]
     pillars = [[-4.9, -1.7, 0.2], [-2.9, -1.1, 0.12], [-0.9, -1.6, 0.25], [1.7, -1.2, 0.1], [4.6, 1.3, 0.3]]
     return Room(np.vstack((walls.segments, doors)), np.array(pillars))
