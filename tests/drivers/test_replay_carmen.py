@@ -48,6 +48,26 @@ def test_a_laser_line_is_odometry_then_a_scan_with_its_stamp(tmp_path):
     assert (scan.T_base_sensor, scan.frame) == (Pose2.identity(), "laser")
 
 
+def two_poses(number: int, laser: Pose2, robot: Pose2) -> str:
+    poses = " ".join(f"{value:.6f}" for pose in (laser, robot) for value in pose.as_array())
+    return f"FLASER 2 1.0 2.0 {poses} {number} host 0\n"
+
+
+def test_a_first_pose_that_stays_where_it_is_on_the_robot_places_the_laser(tmp_path):
+    mount = Pose2(-0.04, 0.01, 0.0)
+    robots = [Pose2(0.1 * k, 0.02 * k, math.remainder(0.05 * k, math.tau)) for k in range(200)]
+    text = "".join(two_poses(k, robot.compose(mount), robot) for k, robot in enumerate(robots))
+    assert scan_of(tmp_path, text).T_base_sensor == mount
+
+
+def test_a_first_pose_that_a_slam_corrected_does_not_place_the_laser(tmp_path):
+    robots = [Pose2(0.1 * k, 0.02 * k, 0.0) for k in range(200)]
+    text = "".join(
+        two_poses(k, Pose2(robot.x, 1.1 * robot.y, 0.001 * k), robot) for k, robot in enumerate(robots)
+    )
+    assert scan_of(tmp_path, text).T_base_sensor == Pose2.identity()
+
+
 @pytest.mark.parametrize(
     ("beams", "step_deg", "last_deg"),
     [(180, 1.0, 89.0), (181, 1.0, 90.0), (360, 0.5, 89.5), (361, 0.5, 90.0)],

@@ -30,6 +30,9 @@ twice and four times that in the next ones."""
 _LONGEST_M = 80.0
 _CODES = 1.0015
 _PROBED_LINES = 200
+_STEADY_M = 0.001
+_STEADY_RAD = 0.001
+_LARGEST_ROBOT_M = 1.0
 _NAME = re.compile(r"[A-Z][A-Z0-9_-]*")
 
 
@@ -41,8 +44,9 @@ class CarmenLog(MeasurementLog):
 
     A ``FLASER`` line does not say where the laser looks nor how far: beam i points to
     ``-fov / 2 + i · step``, counter-clockwise, with ``step`` = fov over the number of beams (one less where
-    it is odd, as in 181 or 361). The laser is taken to sit in ``base_link``: the line's first pose is the
-    laser's in some logs and one corrected by a SLAM in others. A ``ROBOTLASER1`` line says all of it.
+    it is odd, as in 181 or 361). Its first pose is the laser's in some logs and one corrected by a SLAM in
+    others: it places the laser on the robot if it stays where it is relative to the odometry's over the first
+    200 laser lines, else the laser is taken to sit in ``base_link``. A ``ROBOTLASER1`` line says all of it.
 
     Args:
         path: the file.
@@ -64,6 +68,7 @@ class CarmenLog(MeasurementLog):
         self._fov_rad = fov_rad
         self._given_max_m = range_max_m
         self._range_max_m = _LONGEST_M
+        self._mount = Pose2.identity()
         self._odom_lines = odom_lines
         self._angles: dict[int, NDArray[np.float64]] = {}
 
@@ -73,7 +78,8 @@ class CarmenLog(MeasurementLog):
         return self._lines.progress
 
     def _read(self) -> Iterator[Measurement]:
-        self._range_max_m = self._given_max_m or _range_limit(self.path)
+        probed_m, self._mount = _probe(self.path)
+        self._range_max_m = self._given_max_m or probed_m
         known = 0
         for number, text in self._lines:
             line = CarmenLine(self.path, number, text)
@@ -107,7 +113,7 @@ class CarmenLog(MeasurementLog):
         stamp_s = line.number("the time stamp")
         line.end(2, "a host name and the logger's time stamp")
         yield WheelOdometry(stamp_s, odometry)
-        yield _scan(stamp_s, self._directions(count), ranges, self._range_max_m, Pose2.identity())
+        yield _scan(stamp_s, self._directions(count), ranges, self._range_max_m, self._mount)
 
     def _directions(self, count: int) -> NDArray[np.float64]:
         """(count,) float64 directions of a ``FLASER`` line's beams, shared by all scans of that size."""
@@ -184,14 +190,32 @@ def _scan(
     )
 
 
-def _range_limit(path: Path) -> float:
-    """Where "no return" begins, from the longest readings of the first laser lines."""
+def _probe(path: Path) -> tuple[float, Pose2]:
+    """From the first laser lines: where "no return" begins, and where the laser sits on the robot."""
     lines = (CarmenLine(path, number, text) for number, text in TextLines(path))
     longest_m = 0.0
+    mounts: list[Pose2] = []
     try:
         for line in islice((line for line in lines if line.name == "FLASER"), _PROBED_LINES):
             ranges = line.ranges(line.count("the number of readings"))
             longest_m = max(longest_m, float(np.nanmax(ranges, initial=0.0)))
+            laser, robot = line.pose("the laser's"), line.pose("the odometry's")
+            mounts.append(robot.between(laser))
     except LogError:
         pass  # the reading proper comes to it too, and tells
-    return next((limit for limit in _SICK_LIMITS_M if longest_m <= limit * _CODES), _LONGEST_M)
+    limit_m = next((limit for limit in _SICK_LIMITS_M if longest_m <= limit * _CODES), _LONGEST_M)
+    return limit_m, _steady(mounts)
+
+
+def _steady(mounts: list[Pose2]) -> Pose2:
+    """The place that all agree on, if it is on a robot at all; else the identity."""
+    if not mounts:
+        return Pose2.identity()
+    places = np.array([mount.as_array() for mount in mounts])
+    middle = np.median(places, axis=0)
+    off = np.abs(places - middle).max(axis=0)
+    is_steady = bool(np.hypot(off[0], off[1]) <= _STEADY_M and off[2] <= _STEADY_RAD)
+    is_on_robot = bool(np.hypot(middle[0], middle[1]) <= _LARGEST_ROBOT_M)
+    if len(mounts) < _PROBED_LINES or not (is_steady and is_on_robot):
+        return Pose2.identity()
+    return Pose2(*np.round(middle, 4).tolist())
