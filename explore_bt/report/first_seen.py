@@ -14,7 +14,7 @@ class FirstSeen:
     """Keeps one stamp per cell while grids grow and shift under it."""
 
     def __init__(self) -> None:
-        self._stamps_s = np.full((1, 1), np.inf, dtype=np.float32)
+        self._stamps_s = np.full((0, 0), np.inf, dtype=np.float32)
         self._origin_xy = (0.0, 0.0)
         self._resolution_m = 0.0
 
