@@ -86,16 +86,17 @@ def test_a_virtual_beam_is_the_nearest_return_of_its_direction_and_band(seed: in
     times = rng.uniform(-0.1, 0.0, 400)
     scan = virtual_scan(LevelCloud(0.0, times, own, own, own), 0.3, 2.0, 5.0)
     width = 2 * math.pi / 720
-    bins = np.minimum(np.floor((np.arctan2(own[:, 1], own[:, 0]) + np.pi) / width).astype(int), 719)
+    exact = own.astype(np.float64)
+    bins = np.minimum(np.floor((np.arctan2(exact[:, 1], exact[:, 0]) + np.pi) / width).astype(int), 719)
     for k in range(720):
         here = np.flatnonzero(bins == k)
-        band = [i for i in here if 0.3 <= own[i, 2] <= 2.0]
+        band = [i for i in here if 0.3 <= exact[i, 2] <= 2.0]
         if band:
-            best = min(band, key=lambda i: float(np.hypot(*own[i, :2])))
-            assert math.isclose(float(scan.ranges_m[k]), float(np.hypot(*own[best, :2])), rel_tol=1e-6)
+            best = min(band, key=lambda i: float(np.hypot(*exact[i, :2])))
+            assert math.isclose(float(scan.ranges_m[k]), float(np.hypot(*exact[best, :2])), rel_tol=1e-6)
             assert scan.times_s[k] == times[best]
             assert math.isclose(
-                float(scan.angles_rad[k]), math.atan2(own[best, 1], own[best, 0]), abs_tol=1e-6
+                float(scan.angles_rad[k]), math.atan2(exact[best, 1], exact[best, 0]), abs_tol=1e-6
             )
         elif here.size:
             assert np.isposinf(scan.ranges_m[k])

@@ -34,7 +34,7 @@ def _nearest(
     ranges = np.full(bins, np.float32(np.nan), np.float32)
     times = np.zeros(bins)
     for i in range(points.shape[0]):
-        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        x, y, z = np.float64(points[i, 0]), np.float64(points[i, 1]), np.float64(points[i, 2])
         angle = np.arctan2(y, x)
         k = min(int((angle + np.pi) / width), bins - 1)
         if low <= z <= high:
