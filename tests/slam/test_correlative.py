@@ -69,3 +69,10 @@ def test_a_comb_of_equal_pillars_is_ambiguous_and_a_corner_is_not() -> None:
     assert match.runner_up > 0.85 * match.score
     match = search(ScoreGrid(corner(), 0.5), corner(1), Pose2(0.1, 0.1, 0.0), 1.0, 0.1)
     assert match.runner_up < 0.85 * match.score
+
+
+def test_where_nothing_is_known_or_seen_nothing_scores() -> None:
+    centre, nothing = Pose2(1.0, 2.0, 0.5), np.zeros((0, 2))
+    assert search(ScoreGrid(nothing, 0.5), corner(), centre, 0.5, 0.1).score == 0.0
+    unseen = search(ScoreGrid(corner(), 0.5), nothing, centre, 0.5, 0.1)
+    assert (unseen.pose, unseen.score, unseen.runner_up) == (centre, 0.0, 0.0)

@@ -121,3 +121,12 @@ def test_equal_rooms_along_a_corridor_never_close_a_false_loop() -> None:
     for slips in every:
         end, _ = drifting(equal_rooms(count), way, slips, 1)
         assert not false_closures(end, way)
+
+
+def test_a_hall_too_wide_to_see_its_walls_is_crossed_and_left() -> None:
+    """For 40 m no beam returns anything; drift grows, and places without a single point are in question."""
+    hall = Room(np.array(rectangle(-30.0, -12.0, 30.0, 12.0)), np.zeros((0, 3)))
+    way = list(along([(-25.0, 0.0), (25.0, 0.0), (-25.0, 0.0)]))
+    slips = dict.fromkeys(range(10, len(way), 10), (0.15, 0.0, 0.02))
+    end, _ = drifting(hall, way, slips, 2)
+    assert not false_closures(end, way)

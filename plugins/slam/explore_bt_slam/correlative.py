@@ -32,7 +32,7 @@ class ScoreGrid:
         cell_m: side of a cell.
 
     Args:
-        points: (N, 2) float64, metres.
+        points: (N, 2) float64, metres; where there are none, nothing scores.
         margin_m: the grid reaches this far beyond them.
         cell_m: side of a cell, and the blur of a point.
     """
@@ -40,8 +40,9 @@ class ScoreGrid:
     def __init__(self, points: NDArray[np.float64], margin_m: float, cell_m: float = _CELL_M) -> None:
         margin = margin_m + 2**_LEVELS * cell_m
         self.cell_m = cell_m
-        self.origin_xy = points.min(axis=0) - margin
-        shape = np.ceil((points.max(axis=0) + margin - self.origin_xy) / cell_m).astype(np.int64)
+        bounds = points if points.shape[0] else np.zeros((1, 2))
+        self.origin_xy = bounds.min(axis=0) - margin
+        shape = np.ceil((bounds.max(axis=0) + margin - self.origin_xy) / cell_m).astype(np.int64)
         self.pyramid = np.zeros((_LEVELS + 1, int(shape[1]), int(shape[0])), dtype=np.float32)
         _splat(self.pyramid[0], np.ascontiguousarray(points), self.origin_xy, cell_m, cell_m)
         for level in range(_LEVELS):
@@ -83,7 +84,7 @@ def search(
 
     Args:
         grid: what is known.
-        points: (N, 2) float64, base frame.
+        points: (N, 2) float64, base frame; without any the score is 0.
         centre: middle of the window.
         window_m: half its side.
         window_rad: half its opening.
@@ -91,6 +92,8 @@ def search(
             1 looks for the best only, and is faster.
         least: no pose below this score is of interest; the score is 0 if there is none.
     """
+    if points.shape[0] == 0:
+        return Match(centre, 0.0, 0.0)
     far = min(max(float(np.hypot(points[:, 0], points[:, 1]).max()), 1.0), _FAR_M)
     step = grid.cell_m / far
     turns = math.ceil(window_rad / step)
