@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from explore_bt.exploration import clearance_at, way_back
 from explore_bt.interfaces import ControlStatus
 from explore_bt.tree import Input, Leaf, Status
-from explore_bt.types import Path
+from explore_bt.types import Path, way_along
 from explore_bt.units import Duration, Length
 
 __all__ = ["BackOut"]
@@ -75,8 +75,7 @@ def _path_along(
     track: NDArray[np.float64], clearance_m: NDArray[np.float32], enough_m: float, at_least_m: float
 ) -> Path:
     """The track (two places or more) up to the first with room after the first, or to its end."""
-    steps = np.diff(track, axis=0)
-    along_m = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
+    along_m = way_along(track)
     is_enough = (clearance_m >= enough_m) & (along_m >= at_least_m) & (along_m > 0.0)
     last = int(np.argmax(is_enough)) if is_enough.any() else len(track) - 1
     track, clearance_m = track[: last + 1], clearance_m[: last + 1]

@@ -8,7 +8,7 @@ from explore_bt.errors import ComponentFailure, PlanningFailure
 from explore_bt.exploration import clearance_at, visible_unknown_area
 from explore_bt.interfaces import ControlStatus
 from explore_bt.tree import Input, Key, Leaf, Output, Status
-from explore_bt.types import Path, Pose2, Waypoint
+from explore_bt.types import Path, Pose2, Waypoint, way_along
 from explore_bt.units import Area, Duration
 
 __all__ = ["DriveTo"]
@@ -133,7 +133,6 @@ def _ahead(path: Path, here: Pose2) -> np.ndarray[tuple[int, int], np.dtype[np.f
     """(N, 3) x, y and planned clearance of the poses within the next metres from the nearest one on."""
     offsets = path.poses[:, :2] - np.array(here.xy)
     nearest = int(np.argmin(np.einsum("ij,ij->i", offsets, offsets)))
-    steps = np.diff(path.poses[nearest:, :2], axis=0)
-    along = np.concatenate(([0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))))
-    watched = slice(nearest, nearest + int(np.searchsorted(along, _WATCHED_M, side="right")))
+    along_m = way_along(path.poses[nearest:])
+    watched = slice(nearest, nearest + int(np.searchsorted(along_m, _WATCHED_M, side="right")))
     return np.column_stack((path.poses[watched, :2], path.clearance_m[watched]))

@@ -19,9 +19,9 @@ from explore_bt.errors import LogError, UserError
 from explore_bt.evaluation import Relation, relation_errors
 from explore_bt.interfaces import Driver, Playback, RobotContext, Slam
 from explore_bt.plugin import Registry
-from explore_bt.report.mapping_files import driven_m, write_mapping
+from explore_bt.report.mapping_files import write_mapping
 from explore_bt.runtime import Mapping, StopFlag, map_log
-from explore_bt.types import MappingResult, Outcome, Trajectory
+from explore_bt.types import MappingResult, Outcome, Trajectory, way_along
 from explore_bt.version import __version__
 
 __all__ = ["MappingJob", "run_job"]
@@ -117,7 +117,7 @@ def _result(job: MappingJob, mapping: Mapping, stop: StopFlag, began_s: float) -
         coverage=None,
         contacts=None,
         ate_rmse_m=None,
-        path_length_m=float(driven_m(way)[-1]) if len(way.poses) else 0.0,
+        path_length_m=float(way_along(way.poses)[-1]) if len(way.poses) else 0.0,
         mission_time_s=mapping.duration_s,
         wall_time_s=time.perf_counter() - began_s,
         min_clearance_m=None,

@@ -74,11 +74,15 @@ def read_robot(
     )
 
 
+def _given(value: Value | None, scope: Scope, faults: Faults) -> Value | None:
+    """What stands there; None for nothing and for ``null``."""
+    found = None if value is None else resolve(value, scope, faults)
+    return None if isinstance(found, Scalar) and found.data is None else found
+
+
 def _start(value: Value | None, scope: Scope, faults: Faults) -> Pose2 | None:
-    if value is None:
-        return None
-    found = resolve(value, scope, faults)
-    if isinstance(found, Scalar) and found.data is None:
+    found = _given(value, scope, faults)
+    if found is None:
         return None
     adapter: TypeAdapter[tuple[float, float, float]] = TypeAdapter(PoseTriple)
     pose = check_value(lambda text: adapter.validate_json(text, strict=True), found, "start", Asked(), faults)
@@ -86,10 +90,8 @@ def _start(value: Value | None, scope: Scope, faults: Faults) -> Pose2 | None:
 
 
 def _saved_map(value: Value | None, scope: Scope, faults: Faults) -> Path | None:
-    if value is None:
-        return None
-    found = resolve(value, scope, faults)
-    if isinstance(found, Scalar) and found.data is None:
+    found = _given(value, scope, faults)
+    if found is None:
         return None
     adapter: TypeAdapter[Path] = TypeAdapter(FilePath)
     context = {"base_dir": found.place.source.folder}

@@ -1,11 +1,10 @@
 """What people look at: the report, the map files, the live view in a terminal."""
 
+from explore_bt.report.cloud_exporter import PcdExporter, PlyExporter
 from explore_bt.report.g2o_exporter import G2oExporter
 from explore_bt.report.live import ProgressLines, TerminalView
 from explore_bt.report.map_server_exporter import MapServerExporter
 from explore_bt.report.octomap_exporter import OctomapExporter
-from explore_bt.report.pcd_exporter import PcdExporter
-from explore_bt.report.ply_exporter import PlyExporter
 from explore_bt.report.report_sink import ReportSink
 from explore_bt.report.tum_exporter import TumExporter
 

@@ -5,9 +5,6 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from explore_bt.files import write_whole
 from explore_bt.interfaces import Event, RobotProduct, RobotSnapshot, RunInfo, Slam, TickSnapshot
 from explore_bt.plugin import Registry
@@ -22,9 +19,10 @@ from explore_bt.types import (
     Pose2,
     Score,
     Trajectory,
+    way_along,
 )
 
-__all__ = ["driven_m", "write_mapping"]
+__all__ = ["write_mapping"]
 
 _ROBOT = "robot"
 
@@ -45,12 +43,6 @@ def write_mapping(
     write_whole(folder / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
 
 
-def driven_m(way: Trajectory) -> NDArray[np.float64]:
-    """(N,) float64: length of the way up to each pose, metres."""
-    steps = np.hypot(*np.diff(way.poses[:, :2], axis=0).T) if len(way.poses) > 1 else np.zeros(0)
-    return np.concatenate((np.zeros(min(len(way.poses), 1)), np.cumsum(steps)))
-
-
 def _report(
     mapping: Mapping,
     grid: OccupancyGrid,
@@ -63,7 +55,7 @@ def _report(
     sink = ReportSink(ReportSink.Options())
     sink.open(RunInfo(result.mission, "", "", 0, result.version, folder, {_ROBOT: ()}, {_ROBOT: radius_m}))
     for index, (stamp_s, pose, way_m) in enumerate(
-        zip(way.stamps_s.tolist(), way.poses.tolist(), driven_m(way).tolist(), strict=True)
+        zip(way.stamps_s.tolist(), way.poses.tolist(), way_along(way.poses).tolist(), strict=True)
     ):
         sink.on_tick(TickSnapshot(index, stamp_s, (_snapshot(stamp_s, Pose2(*pose), way_m, grid),)))
     for change in mapping.health:

@@ -19,7 +19,7 @@ import pytest
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import API_VERSION, Controller, ControlOutput, ControlStatus, RobotContext
-from explore_bt.types import Estimate, MotionLimits, MotionState, Path, Pose2, Twist2, wrap_angle
+from explore_bt.types import Estimate, MotionLimits, MotionState, Path, Pose2, Twist2, way_along, wrap_angle
 
 __all__ = ["ControllerContract", "KinematicRobot", "cross_track_error", "path_through"]
 
@@ -82,7 +82,7 @@ class KinematicRobot:
 def path_through(points: list[tuple[float, float]], final_yaw_rad: float | None = None) -> Path:
     """A smooth path near a polyline, poses 0.1 m apart; its last heading is the path's own if not given."""
     corners = np.array(points, dtype=np.float64)
-    along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))))
+    along = way_along(corners)
     wanted = np.linspace(0.0, along[-1], max(2, round(along[-1] / 0.02)))
     fine = np.column_stack([np.interp(wanted, along, corners[:, k]) for k in (0, 1)])
     for _ in range(400):  # heat flow rounds the corners and leaves the ends

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from explore_bt.errors import Cancelled, GoalBlocked, GoalUnknown, NoPath, StartBlocked
 from explore_bt.interfaces import API_VERSION, Planner, RobotContext
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Path, Pose2, wrap_angle
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Path, Pose2, way_along, wrap_angle
 
 __all__ = ["PlannerContract", "exact_clearance", "points_along"]
 
@@ -231,7 +231,7 @@ class PlannerContract(ABC):
         path = planner.plan(grid, start, _RIGHT, RADIUS_M)
         points, index = points_along(path)
         clearance = exact_clearance(grid, points)
-        along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+        along = way_along(points)
         tightest = int(clearance.argmin())
         assert clearance[tightest] >= clearance[0] - 0.01, (
             f"at pose {index[tightest]} the way out is tighter ({clearance[tightest]:.2f} m) than the start"

@@ -7,7 +7,7 @@ from explore_bt.types.estimate import Estimate, Health, Trajectory
 from explore_bt.types.grid import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
 from explore_bt.types.measurement import Imu, Measurement, PointCloud, RgbdFrame, Scan2D, WheelOdometry
 from explore_bt.types.motion import MotionLimits, MotionState
-from explore_bt.types.path import Path, Waypoint
+from explore_bt.types.path import Path, Waypoint, way_along
 from explore_bt.types.pose import Pose2, Twist2, wrap_angle
 from explore_bt.types.result import MappingResult, Outcome, Result, Score
 from explore_bt.types.structure import MapStructure, PoseGraph2, Voxels
@@ -40,5 +40,6 @@ __all__ = [
     "Voxels",
     "Waypoint",
     "WheelOdometry",
+    "way_along",
     "wrap_angle",
 ]

@@ -9,7 +9,17 @@ from numpy.typing import NDArray
 
 from explore_bt.types.pose import Pose2
 
-__all__ = ["Path", "Waypoint"]
+__all__ = ["Path", "Waypoint", "way_along"]
+
+
+def way_along(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N,) float64: the way from the first point to each, in the unit of the points.
+
+    Args:
+        points: (N, 2) float64 along a line; more columns take no part.
+    """
+    steps = np.diff(points[:, :2], axis=0)
+    return np.concatenate((np.zeros(min(len(points), 1)), np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,8 +45,7 @@ class Path:
     @property
     def length_m(self) -> float:
         """Metres along the path."""
-        steps = np.diff(self.poses[:, :2], axis=0)
-        return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
+        return float(way_along(self.poses)[-1])
 
     @property
     def min_clearance_m(self) -> float:

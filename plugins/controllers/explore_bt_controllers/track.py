@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from explore_bt.types import MotionLimits
+from explore_bt.types import MotionLimits, way_along
 
 __all__ = ["SPACING_M", "Leg", "legs_of", "project"]
 
@@ -90,8 +90,7 @@ def _apart(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _leg(points: NDArray[np.float64]) -> Leg:
     steps = np.diff(points, axis=0)
-    lengths = np.hypot(steps[:, 0], steps[:, 1])
-    along = np.concatenate(([0.0], np.cumsum(lengths)))
+    along = way_along(points)
     count = max(2, math.ceil(along[-1] / SPACING_M) + 1)
     wanted = np.linspace(0.0, along[-1], count)
     spacing = along[-1] / (count - 1)

@@ -8,18 +8,19 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.types import way_along
+
 __all__ = ["length_of", "resample", "subdivide", "without_repeats"]
 
 
 def length_of(polyline: NDArray[np.float64]) -> float:
     """Along the polyline."""
-    return float(np.hypot(*np.diff(polyline, axis=0).T).sum())
+    return float(way_along(polyline)[-1])
 
 
 def resample(polyline: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
     """Points evenly spaced along a polyline, about ``spacing`` apart, ends included."""
-    steps = np.hypot(*np.diff(polyline, axis=0).T)
-    along = np.concatenate(([0.0], np.cumsum(steps)))
+    along = way_along(polyline)
     wanted = np.linspace(0.0, along[-1], max(1, round(along[-1] / spacing)) + 1)
     points = np.column_stack(
         (np.interp(wanted, along, polyline[:, 0]), np.interp(wanted, along, polyline[:, 1]))

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from explore_bt.types import way_along
 from explore_bt_planners.polyline import length_of, subdivide
 from explore_bt_planners.sampling import clearance_at, segment_clearance
 from explore_bt_planners.search import ClearancePrice, price_at
@@ -56,8 +57,7 @@ def take_shortcuts(
 
 def _spaced(polyline: NDArray[np.float64], spacing_cells: float) -> NDArray[np.int64]:
     """Indices of points about ``spacing_cells`` apart, both ends included."""
-    steps = np.hypot(*np.diff(polyline, axis=0).T)
-    along = np.concatenate(([0.0], np.cumsum(steps)))
+    along = way_along(polyline)
     count = max(1, round(along[-1] / spacing_cells))
     picked = np.searchsorted(along, np.linspace(0.0, along[-1], count + 1))
     picked[0], picked[-1] = 0, len(polyline) - 1
