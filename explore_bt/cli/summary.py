@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 __all__ = ["summary_lines"]
 
 _MOST = 3
-_FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", "recording.mcap"))
+_FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", "recording.mcap"), ("log", "run.log"))
 
 
 def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:

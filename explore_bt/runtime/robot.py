@@ -68,6 +68,7 @@ class Robot:
         self._view: MapView | None = None
         self._tight = TightPlaces()
         self._slam_fault = ""
+        self._logged: set[tuple[str, str]] = set()
         self._health = Health.OK
         self._gate_reason = ""
 
@@ -169,7 +170,7 @@ class Robot:
             raise
         except Exception as error:
             failure = ComponentFailure(f"planner {self._planner.name}", repr(error))
-            self.tell("error", failure.component, failure.reason)
+            self._note_failure(failure.component, error)
             raise failure from error
 
     def _plan(self, goal: Pose2, radius_m: float) -> Path:
@@ -204,7 +205,7 @@ class Robot:
         try:
             self.pilot.step(self.estimate(), self._scan, now_s, dt_s)
         except Exception as error:  # any plugin's failure ends in a controlled stop, never in a crash
-            self.tell("error", f"controller {self._controller.name}", repr(error))
+            self._note_failure(f"controller {self._controller.name}", error)
             self.pilot.brake(f"controller {self._controller.name} failed: {error!r}", now_s, dt_s)
         self._watch_gate()
         pose = self.pilot.predict(self.estimate(), now_s).T_map_base
@@ -267,7 +268,15 @@ class Robot:
             self.slam.update(measurement)
         except Exception as error:  # a SLAM that raises is lost: the gate brakes, the reason is recorded
             self._slam_fault = f"slam {self.slam.name} failed: {error!r}"
-            self.tell("error", f"slam {self.slam.name}", repr(error))
+            self._note_failure(f"slam {self.slam.name}", error)
+
+    def _note_failure(self, component: str, error: Exception) -> None:
+        """Tell the observers; the log gets the traceback too, once for every fault."""
+        fault = (component, repr(error))
+        self.tell("error", *fault)
+        if fault not in self._logged:
+            self._logged.add(fault)
+            _log.error("robot %s: %s failed", self.name, component, exc_info=error)
 
     def _show_gate(self) -> None:
         assert self._scan is not None
@@ -279,7 +288,7 @@ class Robot:
         try:
             return self.driver.read()
         except Exception as error:  # silence is handled: a stale scan brakes the robot
-            self.tell("error", f"driver {self.driver.name}", repr(error))
+            self._note_failure(f"driver {self.driver.name}", error)
             return ()
 
     def _watch_health(self) -> None:

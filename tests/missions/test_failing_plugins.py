@@ -91,7 +91,9 @@ def test_a_slam_that_raises_is_lost_and_the_robot_brakes(tmp_path: Path) -> None
     assert abs(last.motion.twist.linear_mps) < 1e-3
 
 
-def test_a_controller_that_raises_is_braked_for(tmp_path: Path) -> None:
+def test_a_controller_that_raises_is_braked_for_and_logged_once(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     base: type[Controller] = built_in("controller", "pursuit")
     broken = type("Broken", (base,), {"name": "broken", "step": after(150, base.step)})
     result, watcher = run_with(broken, tmp_path, "pursuit")
@@ -99,6 +101,11 @@ def test_a_controller_that_raises_is_braked_for(tmp_path: Path) -> None:
     last = watcher.ticks[-1].robots[0]
     assert "controller broken failed" in last.gate_reason
     assert abs(last.motion.twist.linear_mps) < 1e-3
+    logged = [record for record in caplog.records if record.levelname == "ERROR"]
+    assert len(logged) == 1
+    assert "controller broken failed" in logged[0].getMessage()
+    assert logged[0].exc_info is not None
+    assert "cable pulled" in str(logged[0].exc_info[1])
 
 
 def test_a_planner_that_raises_fails_the_drive_with_its_reason(tmp_path: Path) -> None:
