@@ -1,10 +1,28 @@
-"""How good a trajectory is, by the field's own measures."""
+"""How good a trajectory or an exploration is, by the field's own measures."""
 
+from explore_bt.evaluation.exploration_trial import Decider, Decision, Trial, run_trial
+from explore_bt.evaluation.plain_frontier import PlainNearestFrontier
 from explore_bt.evaluation.relations import (
     Relation,
     RelationErrors,
     read_relations,
     relation_errors,
 )
+from explore_bt.evaluation.starts import spread_starts
+from explore_bt.evaluation.trial_robot import MapDrawer, TrialSettings, TrueWorld
 
-__all__ = ["Relation", "RelationErrors", "read_relations", "relation_errors"]
+__all__ = [
+    "Decider",
+    "Decision",
+    "MapDrawer",
+    "PlainNearestFrontier",
+    "Relation",
+    "RelationErrors",
+    "Trial",
+    "TrialSettings",
+    "TrueWorld",
+    "read_relations",
+    "relation_errors",
+    "run_trial",
+    "spread_starts",
+]

@@ -57,3 +57,21 @@ def test_floor_drawn_as_wall_counts_only_beside_free_floor():
 def test_a_world_without_floor_is_refused():
     with pytest.raises(UserError, match="no free cell"):
         CoverageMeter(drawn("##?"))
+
+
+@settings(deadline=None, max_examples=60)
+@given(random_cells(), random_cells(), st.integers(0, 2**32 - 1), st.sampled_from([0.07, 0.1]))
+def test_looking_again_where_the_map_changed_is_as_good_as_looking_everywhere(
+    truth_cells, cells, seed, resolution_m
+):
+    if not (truth_cells == FREE).any():
+        truth_cells[0, 0] = FREE
+    truth = OccupancyGrid(truth_cells, 0.1, (0.0137, -0.0071))
+    meter, rng = CoverageMeter(truth), np.random.default_rng(seed)
+    meter.measure(OccupancyGrid(cells.copy(), resolution_m, (0.0, 0.0)))
+    for _ in range(4):
+        row, col = (int(rng.integers(0, n)) for n in cells.shape)
+        cells[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2] = rng.choice([FREE, UNKNOWN, 100])
+        grid = OccupancyGrid(cells.copy(), resolution_m, (0.0, 0.0))
+        around = meter.measure_around(grid, grid.center_of(row, col), 1.5 * resolution_m)
+        assert around == CoverageMeter(truth).measure(grid)
