@@ -1,6 +1,7 @@
 """How good a trajectory or an exploration is, by the field's own measures."""
 
 from explore_bt.evaluation.exploration_trial import Decider, Decision, Trial, run_trial
+from explore_bt.evaluation.offline_tour import KnownFloor, Tour, watchman_tours
 from explore_bt.evaluation.plain_frontier import PlainNearestFrontier
 from explore_bt.evaluation.relations import (
     Relation,
@@ -14,10 +15,12 @@ from explore_bt.evaluation.trial_robot import MapDrawer, TrialSettings, TrueWorl
 __all__ = [
     "Decider",
     "Decision",
+    "KnownFloor",
     "MapDrawer",
     "PlainNearestFrontier",
     "Relation",
     "RelationErrors",
+    "Tour",
     "Trial",
     "TrialSettings",
     "TrueWorld",
@@ -25,4 +28,5 @@ __all__ = [
     "relation_errors",
     "run_trial",
     "spread_starts",
+    "watchman_tours",
 ]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
+from explore_bt.evaluation.straight import straightened
 from explore_bt.exploration import clearance_field, find_frontiers, travel_field
 from explore_bt.exploration.way_down import way_down
 from explore_bt.types import OccupancyGrid, Path, Pose2
@@ -58,15 +59,15 @@ class PlainNearestFrontier:
                 break
             self._in_vain.append(grid.center_of(row, col))
             self._without(grid, beside, self._in_vain[-1])
-        cells = straightened(way_down(travel_m, (row, col)), clearance_m, self._radius_m)
+        cells = straightened(way_down(travel_m, (row, col)), clearance_m >= self._radius_m)
         path = _path(grid, clearance_m, cells)
         return PlainDecision(goal=path.goal, path=path)
 
     def _beside(self, grid: OccupancyGrid, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Cells within r and two cells of a frontier, less those about places reached in vain."""
-        far = np.ones(grid.shape, dtype=np.bool_)
-        far[cells[:, 0], cells[:, 1]] = False
-        away = ndimage.distance_transform_edt(far)
+        far = np.ones(grid.shape, dtype=np.uint8)
+        far[cells[:, 0], cells[:, 1]] = 0
+        away = cv2.distanceTransform(far, cv2.DIST_L2, cv2.DIST_MASK_5)
         beside = np.asarray(away <= self._radius_m / grid.resolution_m + 2.0)
         for place in self._in_vain:
             self._without(grid, beside, place)
@@ -76,43 +77,6 @@ class PlainNearestFrontier:
         row, col = grid.cell_of(*place)
         reach = math.ceil(2.0 * self._radius_m / grid.resolution_m)
         beside[max(row - reach, 0) : row + reach + 1, max(col - reach, 0) : col + reach + 1] = False
-
-
-def straightened(
-    cells: NDArray[np.int64], clearance_m: NDArray[np.float32], radius_m: float
-) -> NDArray[np.int64]:
-    """The way with straight lines wherever they keep the footprint's clearance (string pulling).
-
-    Args:
-        cells: (N, 2) rows and columns, each a neighbour of the one before.
-        clearance_m: (rows, cols) float32.
-        radius_m: r; a line is checked every half cell.
-
-    Returns:
-        (M, 2), first and last cell unchanged.
-    """
-    kept, here = [0], 0
-    while here < len(cells) - 1:
-        beyond = cells[here + 1 :]
-        span, step = 1, 1
-        while step < len(beyond) and _is_wide(cells[here], beyond[step], clearance_m, radius_m):
-            span, step = step + 1, 2 * step
-        while step > 0:
-            end = span + step - 1
-            if end < len(beyond) and _is_wide(cells[here], beyond[end], clearance_m, radius_m):
-                span += step
-            step //= 2
-        here += span
-        kept.append(here)
-    return cells[kept]
-
-
-def _is_wide(
-    begin: NDArray[np.int64], end: NDArray[np.int64], clearance_m: NDArray[np.float32], radius_m: float
-) -> bool:
-    count = 2 * int(np.abs(end - begin).max()) + 1
-    line = np.rint(np.linspace(begin, end, count)).astype(np.intp)
-    return bool((clearance_m[line[:, 0], line[:, 1]] >= radius_m).all())
 
 
 def _path(grid: OccupancyGrid, clearance_m: NDArray[np.float32], cells: NDArray[np.int64]) -> Path:
