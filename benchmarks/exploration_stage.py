@@ -10,11 +10,14 @@ import numpy as np
 from explore_bt_drivers.sim2d.truth import SPARE_M
 from explore_bt_drivers.world import World, load_world, observable_floor
 from explore_bt_drivers.world.observable import reachable_cells
+from explore_bt_planners.feature_transform import feature_transform
+from explore_bt_planners.medial_axis import medial_axis
 from explore_bt_slam.canvas import Canvas
 from explore_bt_slam.sweep import Sweep
 from numpy.typing import NDArray
 
 from explore_bt.evaluation import spread_starts
+from explore_bt.exploration import clearance_field
 from explore_bt.types import OccupancyGrid, Pose2
 
 __all__ = ["CanvasDrawer", "Stage", "set_stage"]
@@ -48,6 +51,7 @@ class Stage:
     Attributes:
         reachable: (rows, cols) bool over ``world.floor``: where the robot can come, with 2.5 cm to spare.
         floor: the floor to be seen from there, ``FREE``.
+        clearance_bound_m: mean over the medial axis of ``reachable``: who keeps to the middle has it.
         starts: as many as asked for.
     """
 
@@ -56,6 +60,7 @@ class Stage:
     reachable: NDArray[np.bool_]
     floor: OccupancyGrid
     starts: tuple[Pose2, ...]
+    clearance_bound_m: float
 
 
 def set_stage(
@@ -78,4 +83,13 @@ def set_stage(
     starts = tuple(given) or spread_starts(world.floor, radius_m + SPARE_M, count, seed)
     reachable = reachable_cells(world, starts[0].xy, radius_m + SPARE_M)
     floor = observable_floor(world, starts[0].xy, radius_m + SPARE_M, range_m)
-    return Stage(path.stem, world, reachable, floor, starts)
+    bound_m = _axis_clearance_m(world.floor, reachable, radius_m)
+    return Stage(path.stem, world, reachable, floor, starts, bound_m)
+
+
+def _axis_clearance_m(floor: OccupancyGrid, reachable: NDArray[np.bool_], radius_m: float) -> float:
+    """Mean clearance of the medial axis that the planner ``skeleton`` drives along."""
+    transform = feature_transform(floor.cells)
+    separation = 1.7 * radius_m / floor.resolution_m
+    axis = medial_axis(transform, 1, separation) & reachable
+    return float(clearance_field(floor)[axis].mean()) if axis.any() else 0.0

@@ -10,7 +10,7 @@ from explore_bt.evaluation.relations import (
     relation_errors,
 )
 from explore_bt.evaluation.starts import spread_starts
-from explore_bt.evaluation.trial_robot import MapDrawer, TrialSettings, TrueWorld
+from explore_bt.evaluation.trial_robot import MapDrawer, TrialRobot, TrialSettings, TrueWorld
 
 __all__ = [
     "Decider",
@@ -22,6 +22,7 @@ __all__ = [
     "RelationErrors",
     "Tour",
     "Trial",
+    "TrialRobot",
     "TrialSettings",
     "TrueWorld",
     "read_relations",

@@ -44,12 +44,8 @@ class Decision(Protocol):
         """Whether it has finished."""
 
     @property
-    def outcome(self) -> str:
-        """How it has finished, a word."""
-
-    @property
     def reason(self) -> str:
-        """Why."""
+        """Why, in words."""
 
 
 class Decider(Protocol):
@@ -64,7 +60,8 @@ class Trial:
     """What came of it.
 
     Attributes:
-        outcome: the explorer's own word if it finished, else ``over_budget`` or ``stuck``.
+        outcome: the explorer's own ``outcome`` if it finished and says one, else ``done``; ``over_budget`` or
+            ``stuck`` if it did not finish.
         contacts: how often the footprint would have touched something; the robot stops there each time.
         turning_rad: sum of all changes of heading.
         goal_changes: how often a goal lay elsewhere (by 0.25 m) than the one before.
@@ -135,7 +132,7 @@ def run_trial(
     while True:
         decision = log.ask(decider, robot)
         if decision.done:
-            return _trial(robot, log, decision.outcome or "done", decision.reason)
+            return _trial(robot, log, str(getattr(decision, "outcome", "") or "done"), decision.reason)
         if robot.path_m >= settings.most_path_m:
             return _trial(robot, log, "over_budget", f"{settings.most_path_m:g} m are driven")
         path_m, turning_rad = robot.path_m, robot.turning_rad

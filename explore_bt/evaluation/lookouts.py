@@ -18,8 +18,8 @@ from explore_bt.exploration.way_down import way_down
 
 __all__ = ["Lookouts", "look_from"]
 
-_MOST_PLACES = 6000
-_MOST_TARGETS = 60_000
+_MOST_PLACES = 4000
+_MOST_TARGETS = 20_000
 _REACH_BLOCKS = 2.3  # 20 neighbours: a way in any direction is at most 2 % too long
 _RAYS = 720
 
@@ -52,7 +52,7 @@ class Lookouts:
             start_cell: (row, col) where it begins, a reachable one.
             range_m: the lidar's.
             resolution_m: metres per cell.
-            spacing_m: between places; more on large floors, which get some 6,000 places.
+            spacing_m: between places; more on large floors, which get some 4,000 places.
         """
         self._reachable = reachable
         self._resolution_m = resolution_m

@@ -240,9 +240,11 @@ def _seen_along(known: KnownFloor, corners: NDArray[np.int64], range_m: float) -
     places = np.column_stack([np.interp(at_m, along_m, corners[:, axis]) for axis in range(2)])
     seen = np.zeros(np.count_nonzero(known.wanted), dtype=np.bool_)
     shares = []
-    for place in np.rint(places).astype(np.int64):
-        _, targets = look_from(known.free, number, place[None], range_m / known.resolution_m)
-        seen[targets] = True
+    starts, targets = look_from(
+        known.free, number, np.rint(places).astype(np.int64), range_m / known.resolution_m
+    )
+    for begin, end in itertools.pairwise(starts.tolist()):
+        seen[targets[begin:end]] = True
         shares.append(np.count_nonzero(seen) / max(len(seen), 1))
     return np.column_stack((at_m, shares))
 
