@@ -217,7 +217,7 @@ def _open_plan(room: Furnisher) -> None:
 
 def _islands(room: Furnisher, w: float, h: float) -> int:
     """As many as fit in rows and columns, spread evenly; how many stand."""
-    f, aisle_m = room.floor, 1.7
+    f, aisle_m = room.floor, 1.25
     across, down = (int((n - aisle_m) / (size + aisle_m)) for n, size in ((f.width, w), (f.height, h)))
     gap_x, gap_y = ((n - k * size) / (k + 1) for n, k, size in ((f.width, across, w), (f.height, down, h)))
     return sum(
