@@ -77,7 +77,7 @@ def _arguments() -> argparse.ArgumentParser:
     parser.add_argument("--range", type=float, default=5.0, metavar="M", help="of the lidar")
     parser.add_argument("--beams", type=int, default=360, metavar="N", help="of the lidar, all round")
     parser.add_argument("--decide-every", type=float, default=0.5, metavar="M", help="ask again then")
-    parser.add_argument("--rounds", type=int, default=100, metavar="N", help="of the search for the tours")
+    parser.add_argument("--rounds", type=int, default=60, metavar="N", help="of the search for the tours")
     return parser
 
 

@@ -27,7 +27,7 @@ from explore_bt.evaluation.lookouts import Lookouts, look_from
 from explore_bt.evaluation.visiting_order import shorter_order
 from explore_bt.evaluation.watch import Watch
 
-__all__ = ["KnownFloor", "Tour", "search_order", "watchman_tours"]
+__all__ = ["KnownFloor", "Tour", "lookouts_of", "search_order", "watchman_tours"]
 
 _LOOK_M = 0.1
 _DETOUR_FLOOR_M = 0.3
@@ -89,11 +89,7 @@ def watchman_tours(
         One tour a share, in their order; lengths rise with the share. A share that no lookout can reach
         has length inf.
     """
-    places = np.argwhere(known.reachable)
-    start = places[int(np.argmin(((places - np.asarray(start_cell)) ** 2).sum(axis=1)))]
-    lookouts = Lookouts(
-        known.free, known.wanted, known.reachable, (int(start[0]), int(start[1])), range_m, known.resolution_m
-    )
+    lookouts = lookouts_of(known, start_cell, range_m)
     rng = np.random.default_rng(seed)
     curves = []
     order = [0]
@@ -102,6 +98,13 @@ def watchman_tours(
         corners = lookouts.drive(order)
         curves.append((corners, _seen_along(known, corners, range_m)))
     return tuple(_best(curves, share) for share in shares)
+
+
+def lookouts_of(known: KnownFloor, start_cell: tuple[int, int], range_m: float) -> Lookouts:
+    """The places of a floor; the start is the reachable cell nearest to the one given."""
+    places = np.argwhere(known.reachable)
+    row, col = places[int(np.argmin(((places - np.asarray(start_cell)) ** 2).sum(axis=1)))].tolist()
+    return Lookouts(known.free, known.wanted, known.reachable, (row, col), range_m, known.resolution_m)
 
 
 def search_order(
