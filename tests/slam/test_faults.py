@@ -89,3 +89,19 @@ def test_bad_data_costs_no_more_than_ten_centimetres_unless_health_says_so(
             off_m = estimate.T_map_base.distance_to(robot.pose)
             assert off_m < 0.10 or estimate.health is not Health.OK, measurement.stamp_s
     assert slam.estimate().T_map_base.distance_to(robot.pose) < 0.10
+
+
+def test_a_turn_that_the_gyroscope_did_not_feel_is_not_believed() -> None:
+    """Somebody twists the lidar on its mount by 7°: the map then fits best with the robot turned."""
+    robot = ScriptedRobot(Room.furnished(), Pose2(-0.6, -0.5, 0.0))
+    slam = KissGtsam(KissGtsam.Options())
+    slam.setup(RobotContext(start=robot.pose))
+    for measurement in course(robot):
+        twisted = measurement
+        if isinstance(measurement, Scan2D) and measurement.stamp_s > 4.0:
+            twisted = dataclasses.replace(measurement, angles_rad=measurement.angles_rad - 0.12)
+        slam.update(twisted)
+        if isinstance(measurement, Scan2D):
+            estimate = slam.estimate()
+            turned = abs(wrap_angle(estimate.T_map_base.yaw_rad - robot.pose.yaw_rad))
+            assert turned < 0.05 or estimate.health is not Health.OK, measurement.stamp_s

@@ -28,6 +28,8 @@ _DOUBTFUL_OVERLAP = 0.5
 _DOUBTFUL_RESIDUAL_M = 0.04
 _SURE_OVERLAP = 0.6
 _CLEARLY_BETTER = 0.15
+_GYRO_SLACK_RAD, _GYRO_SLACK_RPS = 0.04, 0.1
+_LURCH_RAD = 0.2
 _BLIND = np.diag([0.03, 0.03, 0.03]) ** 2
 _BLIND_WINDOW_M = 0.25
 _BLIND_WINDOW_MOST_M = 1.0
@@ -114,6 +116,7 @@ class FrontEnd:
             self._filter.loosen(_BLIND)
         trail, prediction = self._filter.trail, last.compose(self._filter.motion)
         covariance = self._filter.covariance
+        slack_rad = self._turn_slack_rad(covariance, trail.span_s)
         points = deskew(scan, trail, self._max_range_m).points
         if min(points.shape[0], self._surfels.count_near(prediction.xy, self._max_range_m)) < _FEWEST_POINTS:
             return self._carried(scan, prediction)
@@ -123,14 +126,16 @@ class FrontEnd:
         if found.overlap < _DOUBTFUL_OVERLAP or found.residual_m > _DOUBTFUL_RESIDUAL_M:
             # where the prediction is wrong by a lurch of the wheels, "stood still" may be nearer
             sought = max(
-                (self._searched(points, centre, covariance) for centre in (prediction, last)),
+                (self._searched(points, centre, covariance, slack_rad) for centre in (prediction, last)),
                 key=lambda each: each.fitness,
             )
             is_sure = sought.overlap >= _SURE_OVERLAP and sought.residual_m <= _DOUBTFUL_RESIDUAL_M
-            if is_sure and sought.fitness > found.fitness + _CLEARLY_BETTER:
+            is_better = is_sure and sought.fitness > found.fitness + _CLEARLY_BETTER
+            if is_better and not self._contradiction(sought, prediction, slack_rad):
                 found, covariance = sought, self._filter.distrust()
-        if found.overlap < _LEAST_OVERLAP:
-            return self._contradicted(scan, prediction, found.overlap)
+        problem = self._contradiction(found, prediction, slack_rad)
+        if problem:
+            return self._contradicted(scan, prediction, found.overlap, problem)
         motion = last.between(found.pose)
         sweep = deskew(scan, trail.corrected_to(motion), self._max_range_m)
         posterior = _inverse(_inverse(covariance) + _turned(found.information, -prediction.yaw_rad))
@@ -158,13 +163,28 @@ class FrontEnd:
         return align(points, normals_of(points), self._surfels, guess, prior, information)
 
     def _searched(
-        self, points: NDArray[np.float64], prior: Pose2, covariance: NDArray[np.float64]
+        self, points: NDArray[np.float64], prior: Pose2, covariance: NDArray[np.float64], slack_rad: float
     ) -> Alignment:
         """A doubtful match is sought again, by correlation and without the prediction's word."""
         window_m = min(3.0 * math.sqrt(float(np.linalg.eigvalsh(covariance[:2, :2])[-1])) + 0.3, 1.0)
-        window_rad = min(3.0 * math.sqrt(float(covariance[2, 2])) + 0.2, 0.5)
-        match = search(self._scores(), _few(points), prior, window_m, window_rad, rivals=1.0)
+        match = search(self._scores(), _few(points), prior, window_m, min(slack_rad, 0.5), rivals=1.0)
         return self._refine(points, match.pose, match.pose, np.eye(3))
+
+    def _turn_slack_rad(self, covariance: NDArray[np.float64], span_s: float) -> float:
+        """How far the heading may be off the prediction: wheels lurch, a gyroscope hardly lies."""
+        gyro_rad = _GYRO_SLACK_RAD + _GYRO_SLACK_RPS * span_s
+        slack_rad = gyro_rad if self._filter.feels_turns else _LURCH_RAD
+        return 3.0 * math.sqrt(float(covariance[2, 2])) + slack_rad
+
+    def _contradiction(self, found: Alignment, prediction: Pose2, slack_rad: float) -> str:
+        """What speaks against the match, in words; empty if nothing does."""
+        if found.overlap < _LEAST_OVERLAP:
+            return f"only {found.overlap:.0%} of the scan fits the map"
+        turned_rad = abs(prediction.between(found.pose).yaw_rad)
+        if self._filter.feels_turns and turned_rad > slack_rad:
+            turn = f"{math.degrees(turned_rad):.0f}°"
+            return f"the scan fits the map only after a turn of {turn} that the gyroscope did not feel"
+        return ""
 
     def _guessed(self, points: NDArray[np.float64], last: Pose2, prediction: Pose2) -> Pose2:
         """Where a search about "stands still" and "goes on as before" lays the scan, if anywhere.
@@ -201,9 +221,8 @@ class FrontEnd:
         problem = text if sigma_m > _CARRIED_M else ""
         return Registered(prediction, sweep, covariance, weakness=text, problem=problem)
 
-    def _contradicted(self, scan: Scan2D, prediction: Pose2, overlap: float) -> Registered:
+    def _contradicted(self, scan: Scan2D, prediction: Pose2, overlap: float, problem: str) -> Registered:
         sweep, covariance = self._keep_prediction(scan)
-        problem = f"only {overlap:.0%} of the scan fits the map"
         return Registered(prediction, sweep, covariance, overlap, fits=False, problem=problem)
 
     def _keep_prediction(self, scan: Scan2D) -> tuple[Sweep, NDArray[np.float64]]:

@@ -89,6 +89,11 @@ class InertialFilter:
         return self._time_s is None or self._time_s - max(self._imu_s, self._wheels_s) > _IMU_SILENCE_S
 
     @property
+    def feels_turns(self) -> bool:
+        """A gyroscope speaks: how far the robot has turned is known, whatever the wheels did."""
+        return self._time_s is not None and self._time_s - self._imu_s <= _IMU_SILENCE_S
+
+    @property
     def _is_under_way(self) -> bool:
         speed_mps = float(np.hypot(self._velocity[0], self._velocity[1]))
         return speed_mps > _UNDER_WAY_MPS or abs(self._yaw_rate_rps) > _UNDER_WAY_RPS

@@ -25,6 +25,11 @@ class Trail:
     poses: NDArray[np.float64]
 
     @property
+    def span_s(self) -> float:
+        """From the first pose to the last, seconds."""
+        return float(self.times_s[-1] - self.times_s[0])
+
+    @property
     def motion(self) -> Pose2:
         """From the first pose to the last."""
         x, y, yaw = self.poses[-1]
@@ -32,14 +37,13 @@ class Trail:
 
     def corrected_to(self, motion: Pose2) -> Trail:
         """The same trail, bent evenly over time so that it ends where registration says."""
-        span_s = float(self.times_s[-1] - self.times_s[0])
-        if span_s <= 0.0:
+        if self.span_s <= 0.0:
             return self
         predicted = self.motion
         missing = np.array(
             [motion.x - predicted.x, motion.y - predicted.y, wrap_angle(motion.yaw_rad - predicted.yaw_rad)]
         )
-        share = ((self.times_s - self.times_s[0]) / span_s)[:, None]
+        share = ((self.times_s - self.times_s[0]) / self.span_s)[:, None]
         return Trail(self.times_s, self.poses + share * missing)
 
     @staticmethod
