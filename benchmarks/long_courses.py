@@ -44,6 +44,7 @@ LONG_CORRIDORS: Points = tuple(
 """Middle lines of the corridors of ``corridors_map``: the outer ring first, 340 m, then back and forth."""
 _STEP_S = 0.05
 _ROBOT_M = 0.3
+_SPEED_CHANGE, _TURN_CHANGE = 0.5 * _STEP_S, 1.0 * _STEP_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,7 @@ class LoggingRobot:
     """What drives and measures.
 
     Attributes:
-        speed_mps, turn_rate_rps: at most.
+        speed_mps, turn_rate_rps: at most; 0.5 m/s² and 1 rad/s² on the way there.
         rate_hz: of the scans.
         beams: over 180°, both ends included where the number is odd.
         range_m: of the lidar; from there on it reports 81.91 m.
@@ -106,7 +107,9 @@ def corridors_map(folder: Path, seed: int = 0) -> Path:
             elif kind < 0.75:
                 dig(at, y + side * half, at + rng.uniform(0.2, 0.5), y + side * (half - 0.2), 0)
             else:
-                dig(at, y + side * half, at + rng.uniform(0.9, 1.5), y + side * (half + rng.uniform(0.8, 1.6)))
+                dig(
+                    at, y + side * half, at + rng.uniform(0.9, 1.5), y + side * (half + rng.uniform(0.8, 1.6))
+                )
     for x in (0.0, _MIDDLE_M, _LONG_M):
         dig(x - half, -half, x + half, _DEEP_M + half)
         for at in np.cumsum(rng.uniform(1.5, 6.0, 40)):
@@ -198,13 +201,15 @@ def _wheels(way: NDArray[np.float64], robot: LoggingRobot, rng: np.random.Genera
 def _followed(way: NDArray[np.float64], robot: LoggingRobot) -> Iterator[NDArray[np.float64]]:
     """A unicycle that heads for a point 0.4 m along, and turns on the spot at sharp corners."""
     x, y = way[0]
-    yaw, at = math.atan2(*(way[min(4, len(way) - 1)] - way[0])[::-1]), 0
+    yaw, at, speed, turn = math.atan2(*(way[min(4, len(way) - 1)] - way[0])[::-1]), 0, 0.0, 0.0
     while at < len(way) - 1 or math.hypot(*(way[-1] - (x, y))) > 0.1:
         while at < len(way) - 1 and math.hypot(*(way[at] - (x, y))) < 0.4:
             at += 1
         off = wrap_angle(math.atan2(way[at, 1] - y, way[at, 0] - x) - yaw)
-        turn = min(max(2.0 * off, -robot.turn_rate_rps), robot.turn_rate_rps)
-        speed = robot.speed_mps * max(1.0 - abs(off) / 0.6, 0.0)
+        wanted = min(max(2.0 * off, -robot.turn_rate_rps), robot.turn_rate_rps)
+        turn += min(max(wanted - turn, -_TURN_CHANGE), _TURN_CHANGE)
+        wanted = robot.speed_mps * max(1.0 - abs(off) / 0.6, 0.0)
+        speed += min(max(wanted - speed, -_SPEED_CHANGE), _SPEED_CHANGE)
         yaw += turn * _STEP_S
         x, y = x + math.cos(yaw) * speed * _STEP_S, y + math.sin(yaw) * speed * _STEP_S
         yield np.array([x, y, wrap_angle(yaw)])

@@ -84,7 +84,9 @@ def make(name: str, folder: Path, seed: int) -> tuple[Path, NDArray[np.float64],
     return path, stamps, truth
 
 
-def measure(name: str, log: Path, stamps: NDArray[np.float64], truth: NDArray[np.float64], odometry: bool) -> str:
+def measure(
+    name: str, log: Path, stamps: NDArray[np.float64], truth: NDArray[np.float64], odometry: bool
+) -> str:
     """One row of the table."""
     replay = Replay(ReplayOptions(log=log))
     slam = KissGtsam(KissGtsam.Options.model_validate({"use_odometry": odometry}))

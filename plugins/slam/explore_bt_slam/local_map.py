@@ -56,7 +56,7 @@ def gather_points(
     keyframes: Sequence[Keyframe], poses: NDArray[np.float64], chosen: Iterable[int]
 ) -> NDArray[np.float64]:
     """(N, 2) float64, ``map`` frame: all points of the chosen keyframes."""
-    clouds = [Pose2(*poses[index].tolist()).apply(keyframes[index].points) for index in chosen]
+    clouds = [Pose2(*poses[index].tolist()).apply(keyframes[index].map_points) for index in chosen]
     return np.concatenate(clouds) if clouds else np.zeros((0, 2))
 
 
@@ -70,5 +70,5 @@ def gather_surfels(
     """The line pieces of the chosen keyframes about a centre."""
     surfels = SurfelMap(centre_xy, half_side_m)
     for index in chosen:
-        surfels.add(keyframes[index].points, keyframes[index].normals, Pose2(*poses[index].tolist()))
+        surfels.add(keyframes[index].map_points, keyframes[index].map_normals, Pose2(*poses[index].tolist()))
     return surfels
