@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bz2
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from explore_bt_drivers.world import World, fitting_cells, load_world
+from explore_bt_drivers.world import World, fitting_cells
 from explore_bt_planners import GridAstar
 from explore_bt_planners.grid_astar import GridAstarOptions
 from numpy.typing import NDArray
@@ -138,7 +139,7 @@ def drive(world: World, places: Points, robot: LoggingRobot) -> NDArray[np.float
     """The true way through all places: (N, 3) float64 x, y (m), yaw (rad), one every 50 ms."""
     planner = GridAstar(GridAstarOptions(margin=0.1))
     legs = []
-    for (x0, y0), (x1, y1) in zip(places, places[1:], strict=False):
+    for (x0, y0), (x1, y1) in itertools.pairwise(places):
         path = planner.plan(world.floor, Pose2(x0, y0, 0.0), Pose2(x1, y1, 0.0), _ROBOT_M)
         legs.append(np.asarray(path.poses)[:, :2])
     way = np.concatenate(legs)
@@ -186,7 +187,7 @@ def _wheels(way: NDArray[np.float64], robot: LoggingRobot, rng: np.random.Genera
     """(N, 3): what the wheels make of the way; noise of 3 % a step on top of scale and turn."""
     bias, here = math.radians(robot.wheel_turn_degpm), Pose2.identity()
     wander, rolled = 0.0, [here.as_array()]
-    for last, now in zip(way, way[1:], strict=False):
+    for last, now in itertools.pairwise(way):
         step = Pose2(*last.tolist()).between(Pose2(*now.tolist()))
         length = math.hypot(step.x, step.y)
         wander += rng.normal(0.0, bias * math.sqrt(length / 50.0))

@@ -1,13 +1,13 @@
-"""Is any place lost, never closed or wrongly closed on a long log?  python benchmarks/long_logs.py [--courses NAME].
+"""Is any place lost, never closed or wrongly closed on a long log?  python benchmarks/long_logs.py.
 
-Drives robots of the CARMEN years (180° view, few scans a second, wheels that turn by some degrees in 10 m) through
-building maps from EXPLORE_BT_DATA and two rings of long corridors, writes CARMEN logs, and maps those as
-``explore-bt slam LOG [--odometry]`` does. The truth is known, so every closure can be judged.
+Drives robots of the CARMEN years (180° view, few scans a second, wheels that turn by some degrees in 10 m)
+through building maps from EXPLORE_BT_DATA and two rings of long corridors, writes CARMEN logs, and maps those
+as ``explore-bt slam LOG [--odometry]`` does. The truth is known, so every closure can be judged.
 
-Columns: how far the wheels' end is off; scans at which health was ``lost``; closures, and how many of them are off by
-more than 0.3 m or 0.1 rad; worst error of the live pose while driving; error over relations between scans 1 to 10 s
-apart (near) and between scans within 5 m of one another but at least a minute apart (again), mean and worst; CPU time
-a scan.
+Columns: how far the wheels' end is off; scans at which health was ``lost``; closures, and how many of them
+are off by more than 0.3 m or 0.1 rad; worst error of the live pose while driving; error over relations
+between scans 1 to 10 s apart (near) and between scans within 5 m of one another but at least a minute apart
+(again), mean and worst; CPU time a scan.
 """
 
 from __future__ import annotations

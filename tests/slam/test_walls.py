@@ -18,9 +18,7 @@ def corridor(half_width_m: float, shift_m: float, noise_m: float = 0.0) -> NDArr
 
 @settings(deadline=None)  # the first call compiles
 @given(st.floats(0.8, 3.0), st.floats(0.0, 0.01))
-def test_what_is_filled_in_lies_on_the_walls_and_looks_at_the_robot(
-    half_width_m: float, noise_m: float
-) -> None:
+def test_what_is_filled_in_lies_on_walls_and_looks_at_the_robot(half_width_m: float, noise_m: float) -> None:
     points, normals = filled_walls(corridor(half_width_m, 0.0, noise_m))
     assert len(points) > 20
     assert np.abs(np.abs(points[:, 1]) - half_width_m).max() < 5.0 * noise_m + 1e-9

@@ -218,7 +218,7 @@ class FrontEnd:
 
 
 def _few(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """About 100 of (N, 2) points, evenly over the sweep; no two within 15 cm, or the nearest wall outvotes all."""
+    """About 100 of (N, 2) points, one a cell of 15 cm: else the nearest wall would outvote all others."""
     _, first = np.unique(np.floor(points / _FEW_M).astype(np.int64) @ (1, 4096), return_index=True)
     return points[np.sort(first)[:: max(first.shape[0] // 100, 1)]]
 

@@ -20,8 +20,8 @@ class Keyframe:
     Attributes:
         points, normals: (N, 2) float64, metres, base frame; normals (0, 0) where there is no line.
         driven_m: length of the way to here since the start.
-        map_points, map_normals: (M, 2) float64: the same and the walls in between, see ``filled_walls``; others
-            are laid onto these.
+        map_points, map_normals: (M, 2) float64: the same and the walls in between, see ``filled_walls``;
+            other scans are laid onto these.
     """
 
     stamp_s: float

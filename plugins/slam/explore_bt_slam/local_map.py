@@ -22,8 +22,9 @@ def trusted_neighbours(
 ) -> list[int]:
     """Keyframes to match against from ``source``: near, and surely placed relative to it.
 
-    The last few always count. Others must be within ``reach_m`` and known to ``sigma_m`` along the graph,
-    so that a part of the map that drift has displaced is not matched against before a closure has tied it.
+    Those made shortly before and after it always count. Others must be within ``reach_m`` and known to
+    ``sigma_m`` along the graph, so that a part of the map that drift has displaced is not matched against
+    before a closure has tied it.
 
     Args:
         poses: (N, 3) float64 keyframe poses.
@@ -34,7 +35,7 @@ def trusted_neighbours(
     """
     distance = np.hypot(poses[:, 0] - poses[source, 0], poses[:, 1] - poses[source, 1])
     spread = np.sqrt(covariances[:, 0, 0] + covariances[:, 1, 1])
-    recent = np.arange(poses.shape[0]) > source - _RECENT
+    recent = np.abs(np.arange(poses.shape[0]) - source) < _RECENT
     wanted = (distance <= reach_m) & ((spread <= sigma_m) | recent)
     chosen = np.flatnonzero(wanted)
     nearest = chosen[np.argsort(distance[chosen], kind="stable")][:_MOST]

@@ -22,8 +22,8 @@ def filled_walls(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
     Far along a corridor the beams of a lidar of 1° lie half a metre apart. A map of returns alone then fits a
     scan best where beam meets beam, which is where the robot stood before: it would seem not to move.
 
-    Between two returns the wall is drawn if it is straight from the one before to the one behind them, if its gaps
-    grow by no more than 2 from one to the next (a doorway is a leap), and if it is no longer than 1 m.
+    Between two returns the wall is drawn if it is straight from the one before to the one behind them, if its
+    gaps grow by no more than 2 from one to the next (a doorway is a leap), and if it is no longer than 1 m.
 
     Args:
         points: (N, 2) float64, metres, base frame, in beam order.
