@@ -101,3 +101,48 @@ def test_steps_that_know_nothing_do_not_make_the_graph_singular() -> None:
                 np.full((3, 3), scale) if np.isnan(scale) else np.eye(3) * scale,
             )
     assert end.poses[-1, 0] == pytest.approx(80.0, abs=1e-3)
+
+
+def laps(count: int, per_lap: int) -> list[Pose2]:
+    """The truth: rounds of a ring, half a metre a keyframe."""
+    truth, step = [Pose2.identity()], Pose2(0.5, 0.0, 2.0 * np.pi / per_lap)
+    for _ in range(1, count * per_lap):
+        truth.append(truth[-1].compose(step))
+    return truth
+
+
+def closed(truth: list[Pose2], per_lap: int, false_share: float, seed: int) -> tuple[PoseGraph, int]:
+    """A graph of laps that drift, each keyframe closed onto the lap before, and false closures in between.
+
+    Returns:
+        The graph, and how many false closures it was offered.
+    """
+    steps, lies = np.random.default_rng(seed), np.random.default_rng(seed + 1)
+    graph, offered, tight = PoseGraph(), 0, SPREAD / 4.0
+    graph.begin(truth[0])
+    for k in range(1, len(truth)):
+        noise = Pose2(*steps.normal(0.0, np.sqrt(np.diag(SPREAD))).tolist())
+        graph.extend(Edge(k - 1, k, truth[k - 1].between(truth[k]).compose(noise), SPREAD, False))
+        edges = []
+        while lies.random() < false_share:
+            to = int(lies.integers(k))
+            wrong = Pose2(*lies.normal(0.0, [1.5, 1.5, 0.7]).tolist())
+            edges.append(Edge(to, k, truth[to].between(truth[k]).compose(wrong), tight, True))
+        offered += len(edges)
+        if k >= per_lap:
+            noise = Pose2(*steps.normal(0.0, np.sqrt(np.diag(tight))).tolist())
+            edges.append(
+                Edge(k - per_lap, k, truth[k - per_lap].between(truth[k]).compose(noise), tight, True)
+            )
+        graph.close(edges)
+    return graph, offered
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_three_false_closures_in_ten_leave_the_graph_where_it_was(seed: int) -> None:
+    truth = laps(4, 40)
+    clean, _ = closed(truth, 40, 0.0, seed)
+    graph, offered = closed(truth, 40, 0.3, seed)
+    assert offered >= 0.3 * (offered + 120)  # closures onto the lap before
+    moved_m = np.hypot(*(graph.poses - clean.poses)[:, :2].T)
+    assert moved_m.max() < 0.05
