@@ -146,3 +146,34 @@ def test_three_false_closures_in_ten_leave_the_graph_where_it_was(seed: int) -> 
     assert offered >= 0.3 * (offered + 120)  # closures onto the lap before
     moved_m = np.hypot(*(graph.poses - clean.poses)[:, :2].T)
     assert moved_m.max() < 0.05
+
+
+def test_early_false_closures_that_nothing_contradicted_are_thrown_out_when_true_ones_are_refused() -> None:
+    """Over the first lap the graph has nothing to doubt a lie by, as long as it lies within the drift."""
+    truth, tight, rng = laps(3, 40), SPREAD / 4.0, np.random.default_rng(0)
+    graph = PoseGraph()
+    graph.begin(truth[0])
+    lies = 0
+    for k in range(1, len(truth)):
+        step = truth[k - 1].between(truth[k])
+        noise = Pose2(*rng.normal(0.0, np.sqrt(np.diag(SPREAD))).tolist())
+        graph.extend(Edge(k - 1, k, step.compose(noise), SPREAD, False))
+        if 34 <= k < 40:
+            lies += len(graph.close([Edge(0, k, graph.pose(0).between(drifted(graph, k)), tight, True)]))
+        if k >= 40:
+            graph.close([Edge(k - 40, k, truth[k - 40].between(truth[k]), tight, True)])
+    assert lies > 0
+    assert graph.closures >= 70
+    assert off_by(graph, truth) < 0.1
+
+
+def drifted(graph: PoseGraph, k: int) -> Pose2:
+    """A place that is three standard deviations from where a keyframe is believed to be, the worst way."""
+    variances, directions = np.linalg.eigh(graph.covariance(k))
+    return Pose2(*(graph.poses[k] + 3.0 * np.sqrt(variances[-1]) * directions[:, -1]).tolist())
+
+
+def off_by(graph: PoseGraph, truth: list[Pose2]) -> float:
+    """Worst error between any keyframe and the one a lap later or before, metres."""
+    pairs = [(k - 40, k) for k in range(40, len(truth))]
+    return max(graph.pose(a).between(graph.pose(b)).distance_to(truth[a].between(truth[b])) for a, b in pairs)
