@@ -6,6 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 from explore_bt_slam.back_end import BackEnd
+from explore_bt_slam.far_closures import FarClosureFinder
+from explore_bt_slam.keyframes import Keyframe
+from explore_bt_slam.surfels import normals_of
 from explore_bt_slam.sweep import Sweep
 
 from explore_bt.testing.slam_room import Room
@@ -130,3 +133,17 @@ def test_a_hall_too_wide_to_see_its_walls_is_crossed_and_left() -> None:
     slips = dict.fromkeys(range(10, len(way), 10), (0.15, 0.0, 0.02))
     end, _ = drifting(hall, way, slips, 2)
     assert not false_closures(end, way)
+
+
+def test_of_each_place_one_grid_is_kept_and_redrawn_while_the_robot_drives_on() -> None:
+    way = list(along([(-24.0, -14.0), (-10.0, -14.0)]))
+    sweeps = [sweep_at(ring_of_cupboards(), pose, k) for k, pose in enumerate(way)]
+    keyframes = [
+        Keyframe(float(k), sweep.points, normals_of(sweep.points), 0.5 * k) for k, sweep in enumerate(sweeps)
+    ]
+    poses = np.array([pose.as_array() for pose in way])
+    finder, piece = FarClosureFinder(), keyframes[4].points
+    finder.sightings(keyframes[:6], poses[:6], piece, 0.0, {4: 0.1})
+    early = finder.sightings(keyframes, poses, keyframes[12].points, 0.0, {4: 0.1})
+    fresh = FarClosureFinder().sightings(keyframes, poses, keyframes[12].points, 0.0, {4: 0.1})
+    assert early == fresh

@@ -105,3 +105,20 @@ def test_a_turn_that_the_gyroscope_did_not_feel_is_not_believed() -> None:
             estimate = slam.estimate()
             turned = abs(wrap_angle(estimate.T_map_base.yaw_rad - robot.pose.yaw_rad))
             assert turned < 0.05 or estimate.health is not Health.OK, measurement.stamp_s
+
+
+@pytest.mark.parametrize("with_imu", [True, False])
+def test_a_clock_set_back_for_good_is_lost_within_a_second_and_then_says_so(with_imu: bool) -> None:
+    robot = ScriptedRobot(Room.furnished(), Pose2(-0.6, -0.5, 0.0))
+    slam = KissGtsam(KissGtsam.Options())
+    slam.setup(RobotContext(start=robot.pose))
+    for measurement in robot.drive(0.2, 0.3, 8.0):
+        if isinstance(measurement, Scan2D):
+            late_s = 60.0 if measurement.stamp_s > 4.0 else 0.0
+            slam.update(dataclasses.replace(measurement, stamp_s=measurement.stamp_s - late_s))
+            estimate = slam.estimate()
+            off_m = estimate.T_map_base.distance_to(robot.pose)
+            assert off_m < 0.10 or estimate.health is not Health.OK, measurement.stamp_s
+        elif with_imu:
+            slam.update(measurement)
+    assert slam.estimate().health is Health.LOST

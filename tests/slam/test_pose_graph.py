@@ -101,3 +101,79 @@ def test_steps_that_know_nothing_do_not_make_the_graph_singular() -> None:
                 np.full((3, 3), scale) if np.isnan(scale) else np.eye(3) * scale,
             )
     assert end.poses[-1, 0] == pytest.approx(80.0, abs=1e-3)
+
+
+def laps(count: int, per_lap: int) -> list[Pose2]:
+    """The truth: rounds of a ring, half a metre a keyframe."""
+    truth, step = [Pose2.identity()], Pose2(0.5, 0.0, 2.0 * np.pi / per_lap)
+    for _ in range(1, count * per_lap):
+        truth.append(truth[-1].compose(step))
+    return truth
+
+
+def closed(truth: list[Pose2], per_lap: int, false_share: float, seed: int) -> tuple[PoseGraph, int]:
+    """A graph of laps that drift, each keyframe closed onto the lap before, and false closures in between.
+
+    Returns:
+        The graph, and how many false closures it was offered.
+    """
+    steps, lies = np.random.default_rng(seed), np.random.default_rng(seed + 1)
+    graph, offered, tight = PoseGraph(), 0, SPREAD / 4.0
+    graph.begin(truth[0])
+    for k in range(1, len(truth)):
+        noise = Pose2(*steps.normal(0.0, np.sqrt(np.diag(SPREAD))).tolist())
+        graph.extend(Edge(k - 1, k, truth[k - 1].between(truth[k]).compose(noise), SPREAD, False))
+        edges = []
+        while lies.random() < false_share:
+            to = int(lies.integers(k))
+            wrong = Pose2(*lies.normal(0.0, [1.5, 1.5, 0.7]).tolist())
+            edges.append(Edge(to, k, truth[to].between(truth[k]).compose(wrong), tight, True))
+        offered += len(edges)
+        if k >= per_lap:
+            noise = Pose2(*steps.normal(0.0, np.sqrt(np.diag(tight))).tolist())
+            edges.append(
+                Edge(k - per_lap, k, truth[k - per_lap].between(truth[k]).compose(noise), tight, True)
+            )
+        graph.close(edges)
+    return graph, offered
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_three_false_closures_in_ten_leave_the_graph_where_it_was(seed: int) -> None:
+    truth = laps(4, 40)
+    clean, _ = closed(truth, 40, 0.0, seed)
+    graph, offered = closed(truth, 40, 0.3, seed)
+    assert offered >= 0.3 * (offered + 120)  # closures onto the lap before
+    moved_m = np.hypot(*(graph.poses - clean.poses)[:, :2].T)
+    assert moved_m.max() < 0.05
+
+
+def test_early_false_closures_that_nothing_contradicted_are_thrown_out_when_true_ones_are_refused() -> None:
+    """Over the first lap the graph has nothing to doubt a lie by, as long as it lies within the drift."""
+    truth, tight, rng = laps(3, 40), SPREAD / 4.0, np.random.default_rng(0)
+    graph = PoseGraph()
+    graph.begin(truth[0])
+    lies = 0
+    for k in range(1, len(truth)):
+        step = truth[k - 1].between(truth[k])
+        noise = Pose2(*rng.normal(0.0, np.sqrt(np.diag(SPREAD))).tolist())
+        graph.extend(Edge(k - 1, k, step.compose(noise), SPREAD, False))
+        if 34 <= k < 40:
+            lies += len(graph.close([Edge(0, k, graph.pose(0).between(drifted(graph, k)), tight, True)]))
+        if k >= 40:
+            graph.close([Edge(k - 40, k, truth[k - 40].between(truth[k]), tight, True)])
+    assert lies > 0
+    assert graph.closures >= 70
+    assert off_by(graph, truth) < 0.1
+
+
+def drifted(graph: PoseGraph, k: int) -> Pose2:
+    """A place that is three standard deviations from where a keyframe is believed to be, the worst way."""
+    variances, directions = np.linalg.eigh(graph.covariance(k))
+    return Pose2(*(graph.poses[k] + 3.0 * np.sqrt(variances[-1]) * directions[:, -1]).tolist())
+
+
+def off_by(graph: PoseGraph, truth: list[Pose2]) -> float:
+    """Worst error between any keyframe and the one a lap later or before, metres."""
+    pairs = [(k - 40, k) for k in range(40, len(truth))]
+    return max(graph.pose(a).between(graph.pose(b)).distance_to(truth[a].between(truth[b])) for a, b in pairs)

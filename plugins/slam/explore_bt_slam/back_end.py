@@ -152,7 +152,7 @@ class BackEnd:
             found += self.looks.find(sight, keyframes, poses, covariances)
         taken = self._graph.close(found)
         if taken:
-            self._closures += len(taken)
+            self._closures = self._graph.closures
             self._measure(newest)
 
     def _measure(self, source: int) -> None:

@@ -22,6 +22,8 @@ __all__ = ["FarClosureFinder", "FarRule", "Sighting"]
 
 _CELL_M = 0.1
 _QUERY_POINTS = 150
+_MOST_GRIDS = 200
+"""Of 1 to 3 MB each; what was not asked for longest is forgotten."""
 _OTHER_POSE_M = 1.0
 _OTHER_POSE_RAD = 0.3
 
@@ -76,7 +78,7 @@ class FarClosureFinder:
 
     def __init__(self, rule: FarRule | None = None) -> None:
         self._rule = rule or FarRule()
-        self._grids: dict[tuple[int, int], ScoreGrid] = {}
+        self._grids: dict[int, tuple[int, ScoreGrid]] = {}
         self._pending: list[Edge] = []
         self._tried_m = -math.inf
 
@@ -194,13 +196,19 @@ class FarClosureFinder:
         return _from(poses[newest], gather_points(keyframes, poses, recent), self._rule.reach_m)
 
     def _grid(self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], place: int) -> ScoreGrid:
-        """A place as it looks from its middle keyframe; hardly changes when the graph moves."""
+        """A place as it looks from its middle keyframe; hardly changes when the graph moves.
+
+        It is drawn anew while the robot still drives on from there.
+        """
         stretch = stretch_about(keyframes, place, self._rule.stretch_m)
-        key = (place, stretch[-1])
-        if key not in self._grids:
+        known = self._grids.pop(place, None)
+        if known is None or known[0] != stretch[-1]:
             points = _from(poses[place], gather_points(keyframes, poses, stretch), self._rule.reach_m + 3.0)
-            self._grids[key] = ScoreGrid(_thinned(points, 4000), 0.5, _CELL_M)
-        return self._grids[key]
+            known = (stretch[-1], ScoreGrid(_thinned(points, 4000), 0.5, _CELL_M))
+        self._grids[place] = known
+        if len(self._grids) > _MOST_GRIDS:
+            del self._grids[next(iter(self._grids))]
+        return known[1]
 
     def _fitted(
         self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], scan: Keyframe, sighting: Sighting

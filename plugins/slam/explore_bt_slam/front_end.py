@@ -36,6 +36,8 @@ _BLIND_WINDOW_MOST_M = 1.0
 _BLIND_WINDOW_RAD = 0.35
 _BLIND_WINDOW_MOST_RAD = 0.8
 _BLIND_SCORE = 0.3
+_AS_GOOD = 0.85
+_FEW_M = 0.15
 _ANCHOR = np.diag([0.003, 0.003, 0.001]) ** 2
 
 
@@ -206,7 +208,9 @@ class FrontEnd:
             rivals=1.0,
             least=_BLIND_SCORE,
         )
-        return match.pose if match.score > 0.0 else prediction
+        expected = search(self._scores(), _few(points), prediction, 0.0, 0.0, rivals=1.0)
+        # along a plain wall all places fit alike: there the motion goes on as it was
+        return prediction if expected.score >= _AS_GOOD * match.score else match.pose
 
     def _scores(self) -> ScoreGrid:
         if self._grid is None:
@@ -233,8 +237,9 @@ class FrontEnd:
 
 
 def _few(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """About 100 of (N, 2) points, evenly over the sweep."""
-    return points[:: max(points.shape[0] // 100, 1)]
+    """About 100 of (N, 2) points, one a cell of 15 cm: else the nearest wall would outvote all others."""
+    _, first = np.unique(np.floor(points / _FEW_M).astype(np.int64) @ (1, 4096), return_index=True)
+    return points[np.sort(first)[:: max(first.shape[0] // 100, 1)]]
 
 
 def _inverse(matrix: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
+from explore_bt_slam.walls import filled_walls
 
 __all__ = ["Keyframe", "KeyframeRule"]
 
@@ -19,12 +20,21 @@ class Keyframe:
     Attributes:
         points, normals: (N, 2) float64, metres, base frame; normals (0, 0) where there is no line.
         driven_m: length of the way to here since the start.
+        map_points, map_normals: (M, 2) float64: the same and the walls in between, see ``filled_walls``;
+            other scans are laid onto these.
     """
 
     stamp_s: float
     points: NDArray[np.float64]
     normals: NDArray[np.float64]
     driven_m: float
+    map_points: NDArray[np.float64] = field(init=False)
+    map_normals: NDArray[np.float64] = field(init=False)
+
+    def __post_init__(self) -> None:
+        between, normals = filled_walls(self.points)
+        object.__setattr__(self, "map_points", np.concatenate((self.points, between)))
+        object.__setattr__(self, "map_normals", np.concatenate((self.normals, normals)))
 
     def within(self, reach_m: float) -> Keyframe:
         """The same without points farther off."""

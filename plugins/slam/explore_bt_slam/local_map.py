@@ -22,8 +22,9 @@ def trusted_neighbours(
 ) -> list[int]:
     """Keyframes to match against from ``source``: near, and surely placed relative to it.
 
-    The last few always count. Others must be within ``reach_m`` and known to ``sigma_m`` along the graph,
-    so that a part of the map that drift has displaced is not matched against before a closure has tied it.
+    Those made shortly before and after it always count. Others must be within ``reach_m`` and known to
+    ``sigma_m`` along the graph, so that a part of the map that drift has displaced is not matched against
+    before a closure has tied it.
 
     Args:
         poses: (N, 3) float64 keyframe poses.
@@ -34,7 +35,7 @@ def trusted_neighbours(
     """
     distance = np.hypot(poses[:, 0] - poses[source, 0], poses[:, 1] - poses[source, 1])
     spread = np.sqrt(covariances[:, 0, 0] + covariances[:, 1, 1])
-    recent = np.arange(poses.shape[0]) > source - _RECENT
+    recent = np.abs(np.arange(poses.shape[0]) - source) < _RECENT
     wanted = (distance <= reach_m) & ((spread <= sigma_m) | recent)
     chosen = np.flatnonzero(wanted)
     nearest = chosen[np.argsort(distance[chosen], kind="stable")][:_MOST]
@@ -56,7 +57,7 @@ def gather_points(
     keyframes: Sequence[Keyframe], poses: NDArray[np.float64], chosen: Iterable[int]
 ) -> NDArray[np.float64]:
     """(N, 2) float64, ``map`` frame: all points of the chosen keyframes."""
-    clouds = [Pose2(*poses[index].tolist()).apply(keyframes[index].points) for index in chosen]
+    clouds = [Pose2(*poses[index].tolist()).apply(keyframes[index].map_points) for index in chosen]
     return np.concatenate(clouds) if clouds else np.zeros((0, 2))
 
 
@@ -70,5 +71,5 @@ def gather_surfels(
     """The line pieces of the chosen keyframes about a centre."""
     surfels = SurfelMap(centre_xy, half_side_m)
     for index in chosen:
-        surfels.add(keyframes[index].points, keyframes[index].normals, Pose2(*poses[index].tolist()))
+        surfels.add(keyframes[index].map_points, keyframes[index].map_normals, Pose2(*poses[index].tolist()))
     return surfels

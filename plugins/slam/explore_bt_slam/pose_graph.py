@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
 from explore_bt_slam.point_to_line import Alignment
+from explore_bt_slam.weighing import weighed
 
 __all__ = ["Edge", "PoseGraph", "closure_edge"]
 
@@ -20,6 +22,8 @@ _CAUCHY_SCALE = 1.0
 _UPDATES_PER_CLOSURE = 1
 _LARGE_M = 0.2
 _SETTLING = 10
+_RECONSIDERED = 12
+"""When so many closures were refused, half of those offered lately, all are weighed anew."""
 _CREDIBLE = 16.3  # χ² of three degrees of freedom, 99.9 %
 _COMMON = np.diag([0.02, 0.02, 0.01]) ** 2
 
@@ -64,6 +68,9 @@ class PoseGraph:
         self._isam = gtsam.ISAM2(_parameters())
         self._poses = np.zeros((0, 3))
         self._edges: list[Edge] = []
+        self._refused: list[Edge] = []
+        self._weighed = 0
+        self._lately: deque[bool] = deque(maxlen=2 * _RECONSIDERED)
 
     @property
     def poses(self) -> NDArray[np.float64]:
@@ -74,6 +81,11 @@ class PoseGraph:
     def edges(self) -> Sequence[Edge]:
         """All constraints, in the order they came."""
         return self._edges
+
+    @property
+    def closures(self) -> int:
+        """How many constraints were found by place."""
+        return sum(edge.is_closure for edge in self._edges)
 
     def pose(self, index: int) -> Pose2:
         """A keyframe's pose."""
@@ -132,12 +144,45 @@ class PoseGraph:
         A closure goes in without a kernel first, so that it takes the drift out at once (under a robust
         kernel a true closure of a large drift looks like an outlier), and gets the kernel once it fits.
 
+        Where one false closure has made the graph sure of something wrong, it refuses all true ones after it;
+        when that happens in a row, all closures ever offered are weighed against one another.
+
         Returns:
             The closures that went in.
         """
-        taken = [edge for edge in edges if self.surprise(edge) <= _CREDIBLE]
-        if not taken:
+        is_credible = [self.surprise(edge) <= _CREDIBLE for edge in edges]
+        taken = [edge for edge, credible in zip(edges, is_credible, strict=True) if credible]
+        self._refused += [edge for edge, credible in zip(edges, is_credible, strict=True) if not credible]
+        self._lately.extend(is_credible)
+        if taken:
+            self._take(taken)
+        is_suspect = self._lately.count(False) >= _RECONSIDERED
+        if is_suspect and len(self._refused) - self._weighed >= _RECONSIDERED:
+            taken += self._reconsider()
+        return taken
+
+    def _reconsider(self) -> list[Edge]:
+        """All closures anew by graduated non-convexity; believed if more of them agree than do now.
+
+        Returns:
+            Closures that had been refused and are now in.
+        """
+        before = self.closures
+        steps = [edge for edge in self._edges if not edge.is_closure]
+        offered = [edge for edge in self._edges if edge.is_closure] + self._refused
+        factors, values = self._whole(self._poses, steps)
+        poses, is_kept = weighed(factors, values, [_factor(edge, is_robust=False) for edge in offered])
+        kept = [edge for edge, keeps in zip(offered, is_kept, strict=True) if keeps]
+        self._weighed = len(self._refused)
+        if len(kept) <= before:
             return []
+        self._refused = [edge for edge, keeps in zip(offered, is_kept, strict=True) if not keeps]
+        self._weighed = len(self._refused)
+        self._lately.clear()
+        self.restore(poses, steps + kept)
+        return [edge for edge, keeps in zip(offered[before:], is_kept[before:], strict=True) if keeps]
+
+    def _take(self, taken: Sequence[Edge]) -> None:
         indices = self._add(taken, is_robust=False)
         for _ in range(_UPDATES_PER_CLOSURE):
             self._isam.update()
@@ -146,7 +191,6 @@ class PoseGraph:
         self._edges.extend(taken)
         if np.hypot(*(self._poses - before)[:, :2].T).max() > _LARGE_M:
             self._settle()
-        return taken
 
     def surprise(self, edge: Edge) -> float:
         """Squared Mahalanobis distance of a new constraint from what the graph believes.
