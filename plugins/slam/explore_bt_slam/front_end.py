@@ -30,6 +30,7 @@ _SURE_OVERLAP = 0.6
 _CLEARLY_BETTER = 0.15
 _GYRO_SLACK_RAD, _GYRO_SLACK_RPS = 0.04, 0.1
 _LURCH_RAD = 0.2
+_ABOUT_M = 1.0
 _BLIND = np.diag([0.03, 0.03, 0.03]) ** 2
 _BLIND_WINDOW_M = 0.25
 _BLIND_WINDOW_MOST_M = 1.0
@@ -133,9 +134,12 @@ class FrontEnd:
             )
             is_sure = sought.overlap >= _SURE_OVERLAP and sought.residual_m <= _DOUBTFUL_RESIDUAL_M
             is_better = is_sure and sought.fitness > found.fitness + _CLEARLY_BETTER
-            if is_better and not self._contradiction(sought, prediction, slack_rad):
+            if is_better and not self._contradiction(sought, prediction, slack_rad, 1.0):
                 found, covariance = sought, self._filter.distrust()
-        problem = self._contradiction(found, prediction, slack_rad)
+        known = self._known_share(points, prediction, found)
+        if known * points.shape[0] < _FEWEST_POINTS:
+            return self._carried(scan, prediction)
+        problem = self._contradiction(found, prediction, slack_rad, known)
         if problem:
             return self._contradicted(scan, prediction, found.overlap, problem)
         motion = last.between(found.pose)
@@ -178,9 +182,18 @@ class FrontEnd:
         slack_rad = gyro_rad if self._filter.feels_turns else _LURCH_RAD
         return 3.0 * math.sqrt(float(covariance[2, 2])) + slack_rad
 
-    def _contradiction(self, found: Alignment, prediction: Pose2, slack_rad: float) -> str:
-        """What speaks against the match, in words; empty if nothing does."""
-        if found.overlap < _LEAST_OVERLAP:
+    def _known_share(self, points: NDArray[np.float64], prediction: Pose2, found: Alignment) -> float:
+        """Share of the scan that lies where the local map knows anything; asked only where little fits."""
+        if found.overlap >= _LEAST_OVERLAP:
+            return 1.0
+        return self._surfels.share_known(prediction.apply(points), _ABOUT_M)
+
+    def _contradiction(self, found: Alignment, prediction: Pose2, slack_rad: float, known: float) -> str:
+        """What speaks against the match, in words; empty if nothing does.
+
+        New walls speak neither for nor against: what fits is compared with the share that is ``known``.
+        """
+        if found.overlap < _LEAST_OVERLAP * known:
             return f"only {found.overlap:.0%} of the scan fits the map"
         turned_rad = abs(prediction.between(found.pose).yaw_rad)
         if self._filter.feels_turns and turned_rad > slack_rad:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from explore_bt.types import Pose2
 from explore_bt_slam.arrays import Floats, Ints32
@@ -47,6 +48,13 @@ class SurfelMap:
         """How many line pieces lie within a radius."""
         off = self.points - np.array(xy)
         return int(np.count_nonzero(np.hypot(off[:, 0], off[:, 1]) <= radius_m))
+
+    def share_known(self, points: NDArray[np.float64], radius_m: float) -> float:
+        """Share [0, 1] of (N, 2) points, ``map`` frame, with a line piece within a radius; N >= 1."""
+        if self._count == 0:
+            return 0.0
+        distance_m, _ = cKDTree(self.points).query(points, distance_upper_bound=radius_m)
+        return float(np.isfinite(distance_m).mean())
 
     def add(self, points: NDArray[np.float64], normals: NDArray[np.float64], pose: Pose2) -> None:
         """Put in a scan seen from ``pose``: (M, 2) points and normals in its base frame."""
