@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 
 from explore_bt.interfaces.plugin import Plugin, RobotContext
-from explore_bt.types import OccupancyGrid, Path, Pose2
+from explore_bt.types import GridWindow, OccupancyGrid, Path, Pose2
 
 __all__ = ["Planner", "never"]
 
@@ -23,6 +23,12 @@ class Planner(Plugin):
 
     def setup(self, context: RobotContext) -> None:  # most planners need nothing
         """Compile and warm up; called once before the first ``plan``."""
+
+    def expect_change(self, before: OccupancyGrid, now: OccupancyGrid, window: GridWindow) -> None:
+        """Told that two states of one map differ within a window only; called before ``plan`` on ``now``.
+
+        Spares a planner that keeps what it derived from ``before`` the look through both; most ignore it.
+        """
 
     @abstractmethod
     def plan(

@@ -176,11 +176,11 @@ def test_an_all_unknown_map_and_a_map_of_one_cell_are_refused_in_words():
 
 
 def test_several_plans_on_one_map_share_one_transform(monkeypatch):
-    from explore_bt_planners import terrain
+    from explore_bt_planners import terrain_cache
 
     made = []
-    original = terrain.feature_transform
-    monkeypatch.setattr(terrain, "feature_transform", lambda cells: made.append(1) or original(cells))
+    original = terrain_cache.feature_transform
+    monkeypatch.setattr(terrain_cache, "feature_transform", lambda cells: made.append(1) or original(cells))
     planner, grid = skeleton(), corridor_with_gap(18)
     for y in (0.5, 1.0, 2.0):
         planner.plan(grid, Pose2(1.0, y, 0.0), Pose2(4.0, 0.5, 0.0), R)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 import math
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,24 +14,25 @@ from pydantic import Field
 
 from explore_bt.errors import Cancelled, GoalBlocked, NoPath, StartBlocked
 from explore_bt.interfaces import Planner, PluginOptions, RobotContext, never
-from explore_bt.types import OccupancyGrid, Path, Pose2
+from explore_bt.types import GridWindow, OccupancyGrid, Path, Pose2
 from explore_bt.units import Length
 from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.endpoints import Departure, check_start, depart, settle
 from explore_bt_planners.polyline import without_repeats
+from explore_bt_planners.route_memory import LINE_REACH_M, LINE_SPACING_M, RouteMemory
 from explore_bt_planners.sampling import clearances_at, segment_clearance
 from explore_bt_planners.search import ClearancePrice
 from explore_bt_planners.shortcut import take_shortcuts
 from explore_bt_planners.smoothing import ClearanceFloor, smooth
-from explore_bt_planners.terrain import SLACK_M, Terrain, TerrainCache
+from explore_bt_planners.terrain import SLACK_M, Terrain
+from explore_bt_planners.terrain_cache import TerrainCache
 from explore_bt_planners.warm_up import practice_grid
 
 __all__ = ["FieldPlanner", "FieldPlannerOptions"]
 
 _POSE_SPACING_M = 0.1
-_LINE_SPACING_M = 0.3
-_LINE_REACH_M = 6.0
 _SAME_PLACE_M = 0.02
+_ASK_S = 0.05  # how often a plan that waits for another one's end asks whether it is still wanted
 
 
 class FieldPlannerOptions(PluginOptions):
@@ -47,15 +49,27 @@ class FieldPlannerOptions(PluginOptions):
     leave_within: Length = Field(
         0.6, ge=0.0, description="how far a start too close to an obstacle may be from where the robot fits"
     )
+    hysteresis: float = Field(
+        0.1,
+        ge=0.0,
+        description="share by which a new route has to be cheaper than the rest of the old one, once the map "
+        "has changed",
+    )
 
 
 class FieldPlanner(Planner):
-    """Plans on the exact clearance of a map; subclasses say by which cells."""
+    """Plans on the exact clearance of a map; subclasses say by which cells.
+
+    What was derived from the map before is brought up to date where the map has changed. One plan is made
+    at a time; a second caller waits.
+    """
 
     def __init__(self, options: FieldPlannerOptions, separation: float = 1.7) -> None:
         super().__init__(options)
         self._options = options
         self._terrains = TerrainCache(separation)
+        self._memory = RouteMemory(options.hysteresis)
+        self._busy = Lock()
 
     def setup(self, context: RobotContext) -> None:
         """Compile every kernel on a practice map."""
@@ -71,14 +85,29 @@ class FieldPlanner(Planner):
         cancelled: Callable[[], bool] = never,
     ) -> Path:
         """See ``Planner.plan``; the margin is given up where it leaves no way."""
+        with self._turn(cancelled):
+            try:
+                return self._plan(grid, start, goal, footprint_radius_m, self._options.margin, cancelled)
+            except (StartBlocked, GoalBlocked, NoPath) as refusal:
+                if self._options.margin == 0.0:
+                    raise
+                with contextlib.suppress(StartBlocked, GoalBlocked, NoPath):
+                    return self._plan(grid, start, goal, footprint_radius_m, 0.0, cancelled)
+                raise refusal
+
+    def expect_change(self, before: OccupancyGrid, now: OccupancyGrid, window: GridWindow) -> None:
+        """See ``Planner.expect_change``."""
+        with self._turn(never):
+            self._terrains.expect(before, now, window)
+
+    @contextlib.contextmanager
+    def _turn(self, cancelled: Callable[[], bool]) -> Iterator[None]:
+        while not self._busy.acquire(timeout=_ASK_S):
+            _give_up_if(cancelled)
         try:
-            return self._plan(grid, start, goal, footprint_radius_m, self._options.margin, cancelled)
-        except (StartBlocked, GoalBlocked, NoPath) as refusal:
-            if self._options.margin == 0.0:
-                raise
-            with contextlib.suppress(StartBlocked, GoalBlocked, NoPath):
-                return self._plan(grid, start, goal, footprint_radius_m, 0.0, cancelled)
-            raise refusal
+            yield
+        finally:
+            self._busy.release()
 
     def _plan(
         self,
@@ -89,19 +118,21 @@ class FieldPlanner(Planner):
         margin_m: float,
         cancelled: Callable[[], bool],
     ) -> Path:
-        if cancelled():
-            raise Cancelled("the plan was cancelled by its caller")
+        _give_up_if(cancelled)
         terrain = self._terrains.terrain(grid, footprint_radius_m + margin_m)
         check_start(terrain, start)
         arrival, goal_cell = settle(terrain, goal, self._options.goal_tolerance)
         departure = depart(terrain, start, footprint_radius_m, self._options.leave_within, goal_cell)
-        self._check_connected(terrain, departure.cell, goal_cell, start, goal)
+        chosen = self._choose_width(terrain, departure.cell, goal_cell)
+        if chosen is not terrain:
+            terrain = chosen
+            arrival, goal_cell = settle(terrain, goal, self._options.goal_tolerance)
+            departure = depart(terrain, start, footprint_radius_m, self._options.leave_within, goal_cell)
         apart = float(np.hypot(*(arrival - departure.points[0]))) * grid.resolution_m
         if apart < _SAME_PLACE_M:
             return _path_of(terrain, departure.points[:1], goal.yaw_rad)
         polyline = self._polyline(terrain, departure, arrival, goal_cell, cancelled)
-        if cancelled():
-            raise Cancelled("the plan was cancelled by its caller")
+        _give_up_if(cancelled)
         points = self._smooth(terrain, departure, polyline)
         return _path_of(terrain, points, goal.yaw_rad)
 
@@ -113,20 +144,16 @@ class FieldPlanner(Planner):
         goal: tuple[int, int],
         cancelled: Callable[[], bool],
     ) -> NDArray[np.int64] | None:
-        """(N, 2) rows and columns of passable cells from start to goal."""
+        """(N, 2) rows and columns of passable cells from start to goal; None if nothing joins them."""
 
     @abstractmethod
     def _price(self, terrain: Terrain) -> ClearancePrice:
         """What a metre costs."""
 
-    def _check_connected(
-        self, terrain: Terrain, start: tuple[int, int], goal: tuple[int, int], at: Pose2, to: Pose2
-    ) -> None:
-        if terrain.component[start] != terrain.component[goal]:
-            raise NoPath(
-                f"no passage from ({at.x:.2f}, {at.y:.2f}) to ({to.x:.2f}, {to.y:.2f}): "
-                + _what_is_missing(terrain, start, goal)
-            )
+    def _choose_width(self, terrain: Terrain, start: tuple[int, int], goal: tuple[int, int]) -> Terrain:
+        """The terrain to plan this way on: the one of the footprint, or one for a wider robot."""
+        del start, goal
+        return terrain
 
     def _polyline(
         self,
@@ -144,13 +171,16 @@ class FieldPlanner(Planner):
             line = np.array([begin, arrival])
         else:
             cells = self._route(terrain, departure.cell, goal_cell, cancelled)
-            if cells is None:  # cannot be: the two are in one piece
-                raise NoPath("start and goal are in one piece of free space, but no route joins them")
+            if cells is None:
+                (x0, y0), (x1, y1) = terrain.to_metres(np.array([departure.points[0], arrival]))
+                raise NoPath(
+                    f"no passage from ({x0:.2f}, {y0:.2f}) to ({x1:.2f}, {y1:.2f}): "
+                    + _what_is_missing(terrain, departure.cell, goal_cell)
+                )
             line = without_repeats(np.concatenate((begin[None], cells[:, ::-1] + 0.5, arrival[None])))
             res = terrain.grid.resolution_m
-            line = take_shortcuts(
-                line, terrain.clearance_m, price, _LINE_SPACING_M / res, _LINE_REACH_M / res
-            )
+            line = take_shortcuts(line, terrain.clearance_m, price, LINE_SPACING_M / res, LINE_REACH_M / res)
+        line = self._memory.choose(terrain, self._terrains.lineage, line, price)
         return np.concatenate((departure.points[:-1], line))
 
     def _smooth(
@@ -162,6 +192,11 @@ class FieldPlanner(Planner):
             terrain.threshold_m - SLACK_M, departure.clearance_m - SLACK_M, float(steps.sum()) + 0.1 / res
         )
         return smooth(without_repeats(polyline), terrain.clearance_m, floor, _POSE_SPACING_M / res)
+
+
+def _give_up_if(cancelled: Callable[[], bool]) -> None:
+    if cancelled():
+        raise Cancelled("the plan was cancelled by its caller")
 
 
 def _path_of(terrain: Terrain, points: NDArray[np.float64], final_yaw_rad: float) -> Path:

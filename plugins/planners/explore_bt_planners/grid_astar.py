@@ -40,6 +40,8 @@ class GridAstar(FieldPlanner):
         goal: tuple[int, int],
         cancelled: Callable[[], bool],
     ) -> NDArray[np.int64] | None:
+        if not terrain.joins(start, goal):
+            return None
         return find_route(
             terrain.passable,
             terrain.passable,

@@ -12,8 +12,9 @@ from explore_bt.types import way_along
 from explore_bt_planners.polyline import length_of, subdivide
 from explore_bt_planners.sampling import clearance_at, segment_clearance
 from explore_bt_planners.search import ClearancePrice, price_at
+from explore_bt_planners.terrain import SLACK_M
 
-__all__ = ["take_shortcuts"]
+__all__ = ["polyline_cost", "take_shortcuts"]
 
 _ROUNDS, _CLEARLY = 5, 0.97
 _SAMPLE_CELLS = 2.0  # for the price; the floor is then checked finely
@@ -53,6 +54,25 @@ def take_shortcuts(
         if enough:
             break
     return line
+
+
+def polyline_cost(
+    polyline: NDArray[np.float64], clearance_m: NDArray[np.float32], price: ClearancePrice
+) -> float:
+    """Price of a way in cells of roomy floor; infinite where it falls below the price's floor."""
+    return float(_polyline_cost(polyline, clearance_m, price.floor_m, price.comfortable_m, price.weight))
+
+
+@njit(cache=True)
+def _polyline_cost(polyline, clearance, floor, comfortable, weight):  # type: ignore[no-untyped-def]  # numba kernel
+    total, lowest = 0.0, floor - SLACK_M
+    for i in range(len(polyline) - 1):
+        u0, v0 = polyline[i]
+        u1, v1 = polyline[i + 1]
+        if segment_clearance(clearance, u0, v0, u1, v1, lowest) < lowest:
+            return np.inf
+        total += _line_cost(clearance, u0, v0, u1, v1, lowest, comfortable, weight, np.inf)
+    return total
 
 
 def _spaced(polyline: NDArray[np.float64], spacing_cells: float) -> NDArray[np.int64]:

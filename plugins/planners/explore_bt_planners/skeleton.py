@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import ClassVar
 
@@ -12,6 +13,7 @@ from pydantic import Field
 from explore_bt.interfaces import API_VERSION, PluginOptions
 from explore_bt.units import Length
 from explore_bt_planners.ascent import ascend
+from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.field_planner import FieldPlanner, FieldPlannerOptions
 from explore_bt_planners.search import ClearancePrice, find_route
 from explore_bt_planners.terrain import Terrain
@@ -28,6 +30,9 @@ class SkeletonOptions(FieldPlannerOptions):
     comfortable: Length = Field(0.6, ge=0.0, description="clearance beyond which more is worth nothing")
     clearance_weight: float = Field(
         1.5, ge=0.0, description="what a metre at the least clearance costs more than a comfortable one"
+    )
+    widest: bool = Field(
+        False, description="take the way whose narrowest place is the widest there is, however long it gets"
     )
 
 
@@ -57,14 +62,48 @@ class Skeleton(FieldPlanner):
         cancelled: Callable[[], bool],
     ) -> NDArray[np.int64] | None:
         """On the skeleton and the two ways up to it; through all passable cells if that does not join."""
-        allowed = terrain.skeleton.copy()
+        route = self._along_skeleton(terrain, start, goal, cancelled)
+        if route is None and terrain.joins(start, goal):
+            route = self._search(terrain, terrain.passable, start, goal, cancelled)
+        return route
+
+    def _along_skeleton(
+        self,
+        terrain: Terrain,
+        start: tuple[int, int],
+        goal: tuple[int, int],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.int64] | None:
+        """Both ways up are opened for this search only: a copy of a large map costs more than the search."""
+        skeleton, opened = terrain.skeleton, []
         for row, col in (start, goal):
-            way = ascend(terrain.transform.squared, terrain.passable, terrain.skeleton, row, col)
-            allowed[way[:, 0], way[:, 1]] = True
-        for cells in (allowed, terrain.passable):
-            route = find_route(
-                cells, terrain.passable, terrain.clearance_m, self._price(terrain), start, goal, cancelled
-            )
-            if route is not None:
-                return route
-        return None
+            way = ascend(terrain.transform.squared, terrain.passable, skeleton, row, col)
+            rows, cols = way[~skeleton[way[:, 0], way[:, 1]]].T
+            skeleton[rows, cols] = True
+            opened.append((rows, cols))
+        try:
+            return self._search(terrain, skeleton, start, goal, cancelled)
+        finally:
+            for rows, cols in opened:
+                skeleton[rows, cols] = False
+
+    def _search(
+        self,
+        terrain: Terrain,
+        allowed: NDArray[np.bool_],
+        start: tuple[int, int],
+        goal: tuple[int, int],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.int64] | None:
+        price = self._price(terrain)
+        return find_route(allowed, terrain.passable, terrain.clearance_m, price, start, goal, cancelled)
+
+    def _choose_width(self, terrain: Terrain, start: tuple[int, int], goal: tuple[int, int]) -> Terrain:
+        """The widest robot for which there is a way: a way for it is the widest passage."""
+        if not self._taste.widest:
+            return terrain
+        squared = widest_squared(terrain.transform.squared, start, goal, terrain.transform.squared.size)
+        if squared is None or squared <= terrain.min_squared:
+            return terrain
+        clearance_m = (math.sqrt(squared) - 0.5) * terrain.grid.resolution_m
+        return Terrain(terrain.grid, clearance_m, self._taste.separation, terrain.transform)
