@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.feature_transform import feature_transform
+from explore_bt_planners.sampling import STEP_CELLS, clearances_at, segment_is_clear
 from explore_bt_planners.search import ClearancePrice, find_route
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
@@ -115,3 +116,20 @@ def test_the_widest_way_is_the_one_found_by_trying_every_width(seed):
         if pieces[2, 2] and pieces[2, 2] == pieces[37, 37]:
             best = int(level)
     assert widest_squared(squared, (2, 2), (37, 37)) == best
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_segment_is_clear_where_every_sample_of_it_is(seed):
+    rng = np.random.default_rng(seed)
+    cells = np.where(rng.random((70, 90)) < 0.004, OCCUPIED, 0).astype(np.int8)
+    squared = feature_transform(cells).squared
+    clearance = (0.05 * np.maximum(np.sqrt(squared) - 0.5, 0.0)).astype(np.float32)
+    clear = []
+    for u0, v0, u1, v1 in rng.uniform(0.0, (90.0, 70.0, 90.0, 70.0), size=(300, 4)):
+        floor = float(rng.choice([0.1, 0.25, 0.4]))
+        count = max(1, int(np.ceil(np.hypot(u1 - u0, v1 - v0) / STEP_CELLS)))
+        t = np.arange(count + 1) / count
+        values = clearances_at(clearance, np.column_stack((u0 + t * (u1 - u0), v0 + t * (v1 - v0))))
+        clear.append(bool((values >= floor).all()))
+        assert segment_is_clear(clearance, u0, v0, u1, v1, floor, 0.05) == clear[-1]
+    assert 10 < sum(clear) < 290

@@ -19,8 +19,8 @@ from explore_bt.units import Length
 from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.endpoints import Departure, check_start, depart, settle
 from explore_bt_planners.polyline import without_repeats
-from explore_bt_planners.route_memory import LINE_REACH_M, LINE_SPACING_M, RouteMemory
-from explore_bt_planners.sampling import clearances_at, segment_clearance
+from explore_bt_planners.route_memory import RouteMemory
+from explore_bt_planners.sampling import clearances_at, segment_is_clear
 from explore_bt_planners.search import ClearancePrice
 from explore_bt_planners.shortcut import take_shortcuts
 from explore_bt_planners.smoothing import ClearanceFloor, smooth
@@ -166,8 +166,8 @@ class FieldPlanner(Planner):
         """Start, way out of a tight start, shortened route, goal."""
         price = self._price(terrain)
         begin = departure.points[-1]
-        at_once = segment_clearance(terrain.clearance_m, *begin, *arrival, price.comfortable_m)
-        if at_once >= price.comfortable_m:
+        res = terrain.grid.resolution_m
+        if segment_is_clear(terrain.clearance_m, *begin, *arrival, price.comfortable_m, res):
             line = np.array([begin, arrival])
         else:
             cells = self._route(terrain, departure.cell, goal_cell, cancelled)
@@ -178,8 +178,7 @@ class FieldPlanner(Planner):
                     + _what_is_missing(terrain, departure.cell, goal_cell)
                 )
             line = without_repeats(np.concatenate((begin[None], cells[:, ::-1] + 0.5, arrival[None])))
-            res = terrain.grid.resolution_m
-            line = take_shortcuts(line, terrain.clearance_m, price, LINE_SPACING_M / res, LINE_REACH_M / res)
+            line = take_shortcuts(line, terrain.clearance_m, price, res)
         line = self._memory.choose(terrain, self._terrains.lineage, line, price)
         return np.concatenate((departure.points[:-1], line))
 

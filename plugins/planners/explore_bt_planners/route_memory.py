@@ -13,10 +13,8 @@ from explore_bt_planners.search import ClearancePrice
 from explore_bt_planners.shortcut import polyline_cost, take_shortcuts
 from explore_bt_planners.terrain import Terrain
 
-__all__ = ["LINE_REACH_M", "LINE_SPACING_M", "RouteMemory"]
+__all__ = ["RouteMemory"]
 
-LINE_SPACING_M = 0.3
-LINE_REACH_M = 6.0
 _SAME_GOAL_M = 0.3
 _ASTRAY_M = 0.5  # farther from the old route than this, the robot is no longer on it
 _JOIN_M = 0.4  # ahead of the place nearest to the robot, where it joins the old route
@@ -61,8 +59,10 @@ class RouteMemory:
         rest = self._rest(terrain, lineage, fresh, price)
         chosen = fresh
         if rest is not None:
-            limit = (1.0 + self._reluctance) * polyline_cost(fresh, terrain.clearance_m, price)
-            if polyline_cost(rest, terrain.clearance_m, price) <= limit:
+            limit = (1.0 + self._reluctance) * polyline_cost(
+                fresh, terrain.clearance_m, price, terrain.grid.resolution_m
+            )
+            if polyline_cost(rest, terrain.clearance_m, price, terrain.grid.resolution_m) <= limit:
                 chosen = rest
         self._route = _Route(terrain.to_metres(chosen), terrain.grid.revision, lineage, terrain.threshold_m)
         return chosen
@@ -89,6 +89,6 @@ class RouteMemory:
         res = terrain.grid.resolution_m
         points = (old.points_m[ahead:-1] - np.asarray(terrain.grid.origin_xy)) / res
         rest = np.concatenate((fresh[:1], points, fresh[-1:]))
-        if math.isinf(polyline_cost(rest, terrain.clearance_m, price)):
+        if math.isinf(polyline_cost(rest, terrain.clearance_m, price, terrain.grid.resolution_m)):
             return None
-        return take_shortcuts(rest, terrain.clearance_m, price, LINE_SPACING_M / res, LINE_REACH_M / res)
+        return take_shortcuts(rest, terrain.clearance_m, price, res)

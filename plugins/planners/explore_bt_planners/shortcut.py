@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from explore_bt.types import way_along
 from explore_bt_planners.polyline import length_of, subdivide
-from explore_bt_planners.sampling import clearance_at, segment_clearance
+from explore_bt_planners.sampling import clearance_at, segment_is_clear
 from explore_bt_planners.search import ClearancePrice, price_at
 from explore_bt_planners.terrain import SLACK_M
 
 __all__ = ["polyline_cost", "take_shortcuts"]
 
+_SPACING_M, _REACH_M = 0.3, 6.0
 _ROUNDS, _CLEARLY = 5, 0.97
 _SAMPLE_CELLS = 2.0  # for the price; the floor is then checked finely
 
@@ -24,31 +25,28 @@ def take_shortcuts(
     polyline: NDArray[np.float64],
     clearance_m: NDArray[np.float32],
     price: ClearancePrice,
-    spacing_cells: float,
-    reach_cells: float,
+    resolution_m: float,
 ) -> NDArray[np.float64]:
     """The cheapest way along the polyline that may leave it by straight lines between its points.
 
-    Dynamic programming over points ``spacing_cells`` apart; a line may span ``reach_cells`` and keeps the
-    price's floor everywhere. The pieces of the polyline itself stay as they are. Repeated on its own result
-    while that gets clearly shorter: each round cuts the corners that the one before has left.
+    Dynamic programming over points 0.3 m apart; a line may span 6 m and keeps the price's floor everywhere.
+    The pieces of the polyline itself stay as they are. Repeated on its own result while that gets clearly
+    shorter: each round cuts the corners that the one before has left.
 
     Args:
         polyline: (N, 2) float64 column, row as real numbers of cells.
         clearance_m: (rows, cols) float32.
         price: what a metre costs.
-        spacing_cells: between the ends of possible lines.
-        reach_cells: longest line.
+        resolution_m: metres per cell.
 
     Returns:
         (M, 2) float64, first and last point unchanged.
     """
-    line = polyline
+    line, spacing_cells = polyline, _SPACING_M / resolution_m
     for _ in range(_ROUNDS):
         nodes = _spaced(line, spacing_cells)
-        shorter = _cheapest(
-            line, nodes, clearance_m, price.floor_m, price.comfortable_m, price.weight, reach_cells
-        )
+        terms = (price.floor_m, price.comfortable_m, price.weight)
+        shorter = _cheapest(line, nodes, clearance_m, *terms, _REACH_M / resolution_m, resolution_m)
         enough = length_of(shorter) > _CLEARLY * length_of(line)
         line = subdivide(shorter, spacing_cells)
         if enough:
@@ -57,19 +55,23 @@ def take_shortcuts(
 
 
 def polyline_cost(
-    polyline: NDArray[np.float64], clearance_m: NDArray[np.float32], price: ClearancePrice
+    polyline: NDArray[np.float64],
+    clearance_m: NDArray[np.float32],
+    price: ClearancePrice,
+    resolution_m: float,
 ) -> float:
     """Price of a way in cells of roomy floor; infinite where it falls below the price's floor."""
-    return float(_polyline_cost(polyline, clearance_m, price.floor_m, price.comfortable_m, price.weight))
+    terms = (price.floor_m, price.comfortable_m, price.weight)
+    return float(_polyline_cost(polyline, clearance_m, *terms, resolution_m))
 
 
 @njit(cache=True)
-def _polyline_cost(polyline, clearance, floor, comfortable, weight):  # type: ignore[no-untyped-def]  # numba kernel
+def _polyline_cost(polyline, clearance, floor, comfortable, weight, resolution):  # type: ignore[no-untyped-def]  # numba kernel
     total, lowest = 0.0, floor - SLACK_M
     for i in range(len(polyline) - 1):
         u0, v0 = polyline[i]
         u1, v1 = polyline[i + 1]
-        if segment_clearance(clearance, u0, v0, u1, v1, lowest) < lowest:
+        if not segment_is_clear(clearance, u0, v0, u1, v1, lowest, resolution):
             return np.inf
         total += _line_cost(clearance, u0, v0, u1, v1, lowest, comfortable, weight, np.inf)
     return total
@@ -81,7 +83,8 @@ def _spaced(polyline: NDArray[np.float64], spacing_cells: float) -> NDArray[np.i
     count = max(1, round(along[-1] / spacing_cells))
     picked = np.searchsorted(along, np.linspace(0.0, along[-1], count + 1))
     picked[0], picked[-1] = 0, len(polyline) - 1
-    return np.unique(np.minimum(picked, len(polyline) - 1))
+    picked = np.minimum(picked, len(polyline) - 1)
+    return picked[np.append(True, np.diff(picked) > 0)]
 
 
 @njit(cache=True)
@@ -103,7 +106,7 @@ def _line_cost(clearance, u0, v0, u1, v1, floor, comfortable, weight, give_up_ab
 
 
 @njit(cache=True)
-def _cheapest(polyline, nodes, clearance, floor, comfortable, weight, reach):  # type: ignore[no-untyped-def]  # numba kernel
+def _cheapest(polyline, nodes, clearance, floor, comfortable, weight, reach, resolution):  # type: ignore[no-untyped-def]  # numba kernel
     count = len(nodes)
     best = np.full(count, np.inf)
     came = np.zeros(count, dtype=np.int64)
@@ -126,7 +129,7 @@ def _cheapest(polyline, nodes, clearance, floor, comfortable, weight, reach):  #
             cost = best[i] + _line_cost(
                 clearance, u0, v0, u1, v1, floor, comfortable, weight, best[j] - best[i]
             )
-            if cost < best[j] and segment_clearance(clearance, u0, v0, u1, v1, floor) >= floor:
+            if cost < best[j] and segment_is_clear(clearance, u0, v0, u1, v1, floor, resolution):
                 best[j], came[j], straight[j] = cost, i, True
     return _unroll(polyline, nodes, came, straight)
 
