@@ -62,7 +62,9 @@ def transform_window(
         seen: holds ``window`` and every nearest obstacle of its cells; where it ends at the border of the
             map, the world outside is seen too.
     """
-    nearest_row = np.empty((seen.row1 - seen.row0, seen.col1 - seen.col0), dtype=np.int32)
+    nearest_row = transform.row  # of the whole map: each row is read before it is written
+    if window != GridWindow(0, 0, *cells.shape):
+        nearest_row = np.empty((seen.row1 - seen.row0, seen.col1 - seen.col0), dtype=np.int32)
     look = (seen.row0, seen.col0, seen.row1, seen.col1)
     _scan_columns(cells, *look, nearest_row)
     box = (window.row0, window.col0, window.row1, window.col1)
@@ -92,11 +94,12 @@ def _scan_rows(cells, nearest_row, look, box, squared, row, col):  # type: ignor
     look_row0, look_col0, _, look_col1 = look
     row0, col0, row1, col1 = box
     width = look_col1 - look_col0
-    site = np.empty(width + 2, dtype=np.int64)  # columns on the lower envelope
-    height = np.empty(width + 2, dtype=np.int64)  # their squared vertical distances
-    begin = np.empty(width + 2, dtype=np.int64)  # first column each of them wins
+    site = np.empty(width + 2, dtype=np.int32)  # columns on the lower envelope
+    height = np.empty(width + 2, dtype=np.int32)  # their squared vertical distances
+    begin = np.empty(width + 2, dtype=np.int32)  # first column each of them wins
+    nearest = np.empty(width, dtype=np.int32)
     for r in range(row0, row1):
-        nearest = nearest_row[r - look_row0]
+        nearest[:] = nearest_row[r - look_row0]
         c = col0
         while c < col1:
             if cells[r, c] != FREE:

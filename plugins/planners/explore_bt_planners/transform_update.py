@@ -66,12 +66,9 @@ def grown(transform: FeatureTransform, shape: tuple[int, int], offset: tuple[int
         shape: rows and columns of the larger one.
         offset: row and column in the larger map of the smaller one's first cell.
     """
-    row, col = (np.ascontiguousarray(axis) for axis in np.indices(shape, dtype=np.int32))
-    return FeatureTransform(
-        paste(np.zeros(shape, dtype=np.int32), transform.squared, offset),
-        paste(row, transform.row + np.int32(offset[0]), offset),
-        paste(col, transform.col + np.int32(offset[1]), offset),
-    )
+    squared, row, col = (np.empty(shape, dtype=np.int32) for _ in range(3))
+    _grow(transform.squared, transform.row, transform.col, *offset, squared, row, col)
+    return FeatureTransform(squared, row, col)
 
 
 def paste(large: NDArray[Any], small: NDArray[Any], offset: tuple[int, int]) -> NDArray[Any]:
@@ -90,6 +87,20 @@ def _differing_rows(old: NDArray[np.int8], new: NDArray[np.int8], row0: int, row
     if not np.array_equal(before[whole:], now[whole:]):
         return row0 + 8 * first // cols, row1
     return row0 + 8 * first // cols, row0 + min((8 * last + 7) // cols + 1, row1 - row0)
+
+
+@njit(cache=True)
+def _grow(old_squared, old_row, old_col, row0, col0, squared, row, col):  # type: ignore[no-untyped-def]  # numba kernel
+    rows, cols = old_squared.shape
+    for r in range(squared.shape[0]):
+        inside = row0 <= r < row0 + rows
+        for c in range(squared.shape[1]):
+            if inside and col0 <= c < col0 + cols:
+                squared[r, c] = old_squared[r - row0, c - col0]
+                row[r, c] = old_row[r - row0, c - col0] + row0
+                col[r, c] = old_col[r - row0, c - col0] + col0
+            else:
+                squared[r, c], row[r, c], col[r, c] = 0, r, c
 
 
 @njit(cache=True)
