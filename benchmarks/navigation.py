@@ -1,8 +1,8 @@
 """Is the planner one to switch on?  python benchmarks/navigation.py [--map MAP.yaml] [--json FILE]
 
-Map and skeleton: full, updated in a window, queried, in CPU milliseconds; cells that differ from a full recompute
-over random windows. Planners from the package index on the same pairs: time, length, clearance. The widest
-passage against a slow independent search. Without --map a made-up building is used.
+Map and skeleton: full, updated in a window, queried, in CPU milliseconds; cells that differ from a full
+recompute over random windows. Planners from the package index on the same pairs: time, length, clearance. The
+widest passage against a slow independent search. Without --map a made-up building is used.
 """
 
 from __future__ import annotations
@@ -34,6 +34,10 @@ from explore_bt.types import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid,
 
 RADIUS_M, MARGIN_M, SEPARATION = 0.25, 0.02, 1.7
 WINDOW_M = 10.0
+TASTES: dict[str, dict[str, float]] = {
+    "skeleton": {},
+    "roomy": {"comfortable": 1.5, "clearance_weight": 12.0},
+}
 FIELDS = ("clearance_m", "passable", "skeleton")
 
 
@@ -165,28 +169,34 @@ def judge(
     return float(np.hypot(*np.diff(xy, axis=0).T).sum()), float(found.min()), float(found.mean())
 
 
-def compare(grid: OccupancyGrid, pairs: list[tuple[Cell, Cell]], budget_s: float) -> dict[str, Any]:
-    """Ours on all pairs, every peer on as many of them as its budget allows."""
-    field, planner = clearance_field(grid), Skeleton(Skeleton.Options())
+def drive(grid: OccupancyGrid, pairs: list[tuple[Cell, Cell]], taste: str) -> NDArray[np.float64]:
+    """(N, 4) float64: CPU milliseconds, length, lowest and mean clearance of our path for every pair."""
+    field, planner, rows = clearance_field(grid), Skeleton(Skeleton.Options(**TASTES[taste])), []
     planner.plan(grid, at(grid, pairs[0][0]), at(grid, pairs[0][1]), RADIUS_M)
-    ours = []
     for start, goal in pairs:
         begin = time.process_time()
         path = planner.plan(grid, at(grid, start), at(grid, goal), RADIUS_M)
-        ours.append((1000.0 * (time.process_time() - begin), *judge(grid, field, path.poses[:, :2])))
-    table = np.array(ours)
+        rows.append((1000.0 * (time.process_time() - begin), *judge(grid, field, path.poses[:, :2])))
+    return np.array(rows)
+
+
+def compare(grid: OccupancyGrid, pairs: list[tuple[Cell, Cell]], budget_s: float) -> dict[str, Any]:
+    """Ours on all pairs, every peer on as many of them as its budget allows."""
+    field = clearance_field(grid)
+    ours = {taste: drive(grid, pairs, taste) for taste in TASTES}
     result: dict[str, Any] = {
-        "skeleton": {
+        taste: {
             "pairs": len(pairs),
             "ms": float(np.median(table[:, 0])),
             "paths_below_r": int((table[:, 2] < RADIUS_M).sum()),
             "min_clearance_m": float(table[:, 2].min()),
             "mean_clearance_m": float(table[:, 3].mean()),
         }
+        for taste, table in ours.items()
     }
     for name, make in PEERS.items():
         try:
-            result[name] = against(table, grid, field, make(field >= RADIUS_M), pairs, budget_s)
+            result[name] = against(ours, grid, field, make(field >= RADIUS_M), pairs, budget_s)
         except ImportError:
             result[name] = {"missing": PIP_LINE}
         print(peer_row(name, result[name]), flush=True)
@@ -194,7 +204,7 @@ def compare(grid: OccupancyGrid, pairs: list[tuple[Cell, Cell]], budget_s: float
 
 
 def against(
-    ours: NDArray[np.float64],
+    ours: dict[str, NDArray[np.float64]],
     grid: OccupancyGrid,
     field: NDArray[np.float32],
     plan: Callable[[Cell, Cell], NDArray[np.float64] | None],
@@ -202,8 +212,8 @@ def against(
     budget_s: float,
 ) -> dict[str, Any]:
     """One peer's figures over the pairs both of us joined and that are a metre apart."""
-    theirs, mine, failed, begun = [], [], 0, time.process_time()
-    for (start, goal), own in zip(pairs, ours, strict=True):
+    theirs, which, failed, begun = [], [], 0, time.process_time()
+    for k, (start, goal) in enumerate(pairs):
         if time.process_time() - begun > budget_s:
             break
         begin = time.process_time()
@@ -211,23 +221,28 @@ def against(
         spent = 1000.0 * (time.process_time() - begin)
         if route is None:
             failed += 1
-        elif own[1] > 1.0:
+        elif ours["skeleton"][k, 1] > 1.0:
             xy = (route[:, ::-1] + 0.5) * grid.resolution_m + np.asarray(grid.origin_xy)
             theirs.append((spent, *judge(grid, field, xy)))
-            mine.append(own)
-    them, us = np.array(theirs), np.array(mine)
-    return {
+            which.append(k)
+    them = np.array(theirs)
+    figures: dict[str, Any] = {
         "pairs": len(them),
         "failed": failed,
         "ms": float(np.median(them[:, 0])),
-        "time_ratio": float(np.median(them[:, 0] / us[:, 0])),
-        "length_ratio": float((us[:, 1] / them[:, 1]).mean()),
-        "longest_ratio": float((us[:, 1] / them[:, 1]).max()),
+        "time_ratio": float(np.median(them[:, 0] / ours["skeleton"][which, 0])),
         "min_clearance_m": float(them[:, 2].min()),
         "mean_clearance_m": float(them[:, 3].mean()),
-        "clearance_ratio": float(us[:, 3].mean() / them[:, 3].mean()),
         "paths_below_r": int((them[:, 2] < RADIUS_M).sum()),
     }
+    for taste, table in ours.items():
+        us = table[which]
+        figures[taste] = {
+            "length_ratio": float((us[:, 1] / them[:, 1]).mean()),
+            "longest_ratio": float((us[:, 1] / them[:, 1]).max()),
+            "clearance_ratio": float(us[:, 3].mean() / them[:, 3].mean()),
+        }
+    return figures
 
 
 def widest_passages(grid: OccupancyGrid, pairs: list[tuple[Cell, Cell]]) -> dict[str, float]:
@@ -261,11 +276,15 @@ def widest_passages(grid: OccupancyGrid, pairs: list[tuple[Cell, Cell]]) -> dict
 def peer_row(name: str, figures: dict[str, Any]) -> str:
     """One line of the table of peers."""
     if "missing" in figures:
-        return f"| {name} | not installed: `{figures['missing']}` |||||||"
+        return f"| {name} | not installed: `{figures['missing']}` ||||||||"
+    ratios = [
+        f"{figures[taste]['length_ratio']:.2f} (≤ {figures[taste]['longest_ratio']:.2f}) | "
+        f"{figures[taste]['clearance_ratio']:.2f}"
+        for taste in TASTES
+    ]
     return (
         f"| {name} | {figures['pairs']} | {figures['ms']:.2f} ms | {figures['time_ratio']:.1f} × | "
-        f"{figures['length_ratio']:.3f} | {figures['longest_ratio']:.2f} | {figures['clearance_ratio']:.2f} | "
-        f"{figures['min_clearance_m']:.2f} m | {figures['paths_below_r']} |"
+        f"{' | '.join(ratios)} | {figures['min_clearance_m']:.2f} m | {figures['paths_below_r']} |"
     )
 
 
@@ -295,14 +314,15 @@ def planner_part(arguments: argparse.Namespace) -> dict[str, Any]:
     figures["bit_equality"] = bit_equality(arena, arguments.windows, rng)
     print("\n{windows} random windows: {cells_that_differ} cells differ".format(**figures["bit_equality"]))
     pairs = pairs_in(arena, arguments.pairs, rng)
-    print("\n| peer | pairs | its time | to ours | length | longest | clearance | its least | below r |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("\n| peer | pairs | its time | to ours | length | clearance | roomy: length | clearance | ", end="")
+    print("its least | below r |\n|---|---|---|---|---|---|---|---|---|---|")
     figures["peers"] = compare(arena, pairs, arguments.peer_seconds)
-    ours = figures["peers"]["skeleton"]
-    print(
-        f"\nskeleton: {ours['pairs']} pairs, {ours['ms']:.2f} ms, least clearance {ours['min_clearance_m']:.3f} m, "
-        f"{ours['paths_below_r']} paths below {RADIUS_M} m"
-    )
+    print()
+    for taste in TASTES:
+        print(
+            "{0}: {pairs} pairs, {ms:.2f} ms, least clearance {min_clearance_m:.3f} m, mean "
+            "{mean_clearance_m:.2f} m, {paths_below_r} paths below r".format(taste, **figures["peers"][taste])
+        )
     figures["widest"] = widest_passages(arena, pairs)
     print("widest passage: attained in {attained} of {pairs} pairs, {ms:.1f} ms".format(**figures["widest"]))
     return figures

@@ -5,7 +5,7 @@ import pytest
 from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.feature_transform import feature_transform
 from explore_bt_planners.sampling import STEP_CELLS, clearances_at, segment_is_clear
-from explore_bt_planners.search import ClearancePrice, find_route
+from explore_bt_planners.search import ClearancePrice, find_costs, find_route
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
@@ -63,6 +63,17 @@ def test_a_route_is_as_short_as_dijkstra_s(seed, wanted):
     assert (route is None) == np.isinf(best)
     if route is not None:
         assert route_cost(route, clearance.astype(float), wanted) == pytest.approx(best, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_costs_of_many_goals_are_dijkstra_s(seed):
+    mask = random_mask(seed, shape=(20, 25), share=0.3)
+    clearance = np.random.default_rng(seed).uniform(1.0, 4.0, mask.shape).astype(np.float32)
+    goals = np.argwhere(np.ones_like(mask))[::7]
+    wanted = ClearancePrice(1.0, 3.0, 2.0)
+    found = find_costs(mask, mask, clearance, wanted, (0, 0), goals, never)
+    best = [dijkstra_cost(mask, clearance.astype(float), wanted, (0, 0), tuple(goal)) for goal in goals]
+    assert found == pytest.approx(np.array(best), rel=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -5,20 +5,20 @@ from __future__ import annotations
 import contextlib
 import math
 from abc import abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from explore_bt.errors import Cancelled, GoalBlocked, NoPath, StartBlocked
+from explore_bt.errors import Cancelled, GoalBlocked, GoalUnknown, NoPath, StartBlocked
 from explore_bt.interfaces import Planner, PluginOptions, RobotContext, never
 from explore_bt.types import GridWindow, OccupancyGrid, Path, Pose2
 from explore_bt.units import Length
 from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.endpoints import Departure, check_start, depart, settle
-from explore_bt_planners.polyline import without_repeats
+from explore_bt_planners.polyline import length_of, without_repeats
 from explore_bt_planners.route_memory import RouteMemory
 from explore_bt_planners.sampling import clearances_at, segment_is_clear
 from explore_bt_planners.search import ClearancePrice
@@ -95,6 +95,33 @@ class FieldPlanner(Planner):
                     return self._plan(grid, start, goal, footprint_radius_m, 0.0, cancelled)
                 raise refusal
 
+    def distances(
+        self,
+        grid: OccupancyGrid,
+        start: Pose2,
+        goals: Sequence[Pose2],
+        footprint_radius_m: float,
+        cancelled: Callable[[], bool] = never,
+    ) -> NDArray[np.float64]:
+        """See ``Planner.distances``; for the footprint without the margin, on the map kept for plans."""
+        found = np.full(len(goals), np.inf)
+        with self._turn(cancelled):
+            _give_up_if(cancelled)
+            terrain = self._terrains.terrain(grid, footprint_radius_m)
+            check_start(terrain, start)
+            cells: dict[int, tuple[int, int]] = {}
+            for k, goal in enumerate(goals):
+                with contextlib.suppress(GoalBlocked, GoalUnknown):
+                    cells[k] = settle(terrain, goal, self._options.goal_tolerance)[1]
+            if not cells:
+                return found
+            towards = next(iter(cells.values()))
+            departure = depart(terrain, start, footprint_radius_m, self._options.leave_within, towards)
+            way_out = length_of(departure.points)
+            lengths = self._lengths(terrain, departure.cell, np.array(list(cells.values())), cancelled)
+            found[list(cells)] = (way_out + lengths) * grid.resolution_m
+        return found
+
     def expect_change(self, before: OccupancyGrid, now: OccupancyGrid, window: GridWindow) -> None:
         """See ``Planner.expect_change``."""
         with self._turn(never):
@@ -145,6 +172,16 @@ class FieldPlanner(Planner):
         cancelled: Callable[[], bool],
     ) -> NDArray[np.int64] | None:
         """(N, 2) rows and columns of passable cells from start to goal; None if nothing joins them."""
+
+    @abstractmethod
+    def _lengths(
+        self,
+        terrain: Terrain,
+        start: tuple[int, int],
+        goals: NDArray[np.int64],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.float64]:
+        """(N,) cells from start to each of (N, 2) rows and columns; inf where nothing joins them."""
 
     @abstractmethod
     def _price(self, terrain: Terrain) -> ClearancePrice:

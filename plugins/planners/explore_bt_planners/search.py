@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 from explore_bt.errors import Cancelled
 from explore_bt_planners.heap import pop, push
 
-__all__ = ["ClearancePrice", "find_route", "price_at"]
+__all__ = ["ClearancePrice", "find_costs", "find_route", "price_at"]
 
 _ROW = (0, 0, 1, -1, 1, 1, -1, -1)
 _COL = (1, -1, 0, 0, 1, -1, 1, -1)
 _FOUND, _EXHAUSTED, _OPEN = 1, 2, 0
 _CLOSED, _START = 16, 9
 _SLICE = 4000
+_NOWHERE = -1  # a goal that no search ends at: all of the floor is settled
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,13 +71,61 @@ def find_route(
     Raises:
         Cancelled: the caller has given up.
     """
+    cols = allowed.shape[1]
+    last = goal[0] * cols + goal[1]
+    state, _, mark = _search(allowed, passable, clearance_m, price, start, last, cancelled)
+    return _round_corners(_trace(mark, cols, last), passable) if state == _FOUND else None
+
+
+def find_costs(
+    allowed: NDArray[np.bool_],
+    passable: NDArray[np.bool_],
+    clearance_m: NDArray[np.float32],
+    price: ClearancePrice,
+    start: tuple[int, int],
+    goals: NDArray[np.int64],
+    cancelled: Callable[[], bool],
+) -> NDArray[np.float64]:
+    """What the cheapest ways of ``find_route`` from one start to many goals cost, in one pass.
+
+    Args:
+        allowed: see ``find_route``.
+        passable: see ``find_route``.
+        clearance_m: see ``find_route``.
+        price: what a metre costs.
+        start: (row, col).
+        goals: (N, 2) int64 rows and columns.
+        cancelled: asked every few thousand cells.
+
+    Returns:
+        (N,) float64 cells of roomy floor; inf where there is no way.
+
+    Raises:
+        Cancelled: the caller has given up.
+    """
+    _, cost, mark = _search(allowed, passable, clearance_m, price, start, _NOWHERE, cancelled)
+    at = goals @ np.array([allowed.shape[1], 1])
+    return np.where(mark[at] & _CLOSED, cost[at], np.inf)
+
+
+def _search(
+    allowed: NDArray[np.bool_],
+    passable: NDArray[np.bool_],
+    clearance_m: NDArray[np.float32],
+    price: ClearancePrice,
+    start: tuple[int, int],
+    last: int,
+    cancelled: Callable[[], bool],
+) -> tuple[int, NDArray[np.float64], NDArray[np.uint8]]:
+    """State, costs and marks once the cell ``last`` is found, or no cell is left."""
     rows, cols = allowed.shape
     cost = np.zeros(rows * cols)  # pages never touched are never made: the map may be huge
     mark = np.zeros(rows * cols, dtype=np.uint8)
     keys, nodes = np.empty(8 * _SLICE + 64), np.empty(8 * _SLICE + 64, dtype=np.int64)
-    first, last = start[0] * cols + start[1], goal[0] * cols + goal[1]
+    first = start[0] * cols + start[1]
     keys[0], nodes[0], size, state = 0.0, first, 1, _OPEN
     mark[first] = _START
+    terms = (price.floor_m, price.comfortable_m, price.weight)
     while state == _OPEN:
         if cancelled():
             raise Cancelled("the search was cancelled by its caller")
@@ -84,21 +133,9 @@ def find_route(
             keys = np.concatenate((keys[:size], np.empty(size + 8 * _SLICE)))
             nodes = np.concatenate((nodes[:size], np.empty(size + 8 * _SLICE, dtype=np.int64)))
         state, size = _expand(
-            allowed,
-            passable,
-            clearance_m,
-            price.floor_m,
-            price.comfortable_m,
-            price.weight,
-            last,
-            _SLICE,
-            keys,
-            nodes,
-            size,
-            cost,
-            mark,
+            allowed, passable, clearance_m, *terms, last, _SLICE, keys, nodes, size, cost, mark
         )
-    return _round_corners(_trace(mark, cols, last), passable) if state == _FOUND else None
+    return state, cost, mark
 
 
 @njit(cache=True)
@@ -152,7 +189,7 @@ def _expand(  # type: ignore[no-untyped-def]  # numba kernel
                 cost[there] = total
                 mark[there] = k + 1
                 dr, dc = abs(nr - goal_row), abs(nc - goal_col)
-                octile = max(dr, dc) + (math.sqrt(2.0) - 1.0) * min(dr, dc)
+                octile = max(dr, dc) + (math.sqrt(2.0) - 1.0) * min(dr, dc) if goal >= 0 else 0.0
                 size = push(keys, nodes, size, total + octile, there)
     return _OPEN, size
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from typing import ClassVar
 
 import numpy as np
@@ -15,7 +16,7 @@ from explore_bt.units import Length
 from explore_bt_planners.ascent import ascend
 from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.field_planner import FieldPlanner, FieldPlannerOptions
-from explore_bt_planners.search import ClearancePrice, find_route
+from explore_bt_planners.search import ClearancePrice, find_costs, find_route
 from explore_bt_planners.terrain import Terrain
 
 __all__ = ["Skeleton", "SkeletonOptions"]
@@ -74,18 +75,22 @@ class Skeleton(FieldPlanner):
         goal: tuple[int, int],
         cancelled: Callable[[], bool],
     ) -> NDArray[np.int64] | None:
-        """Both ways up are opened for this search only: a copy of a large map costs more than the search."""
-        skeleton, opened = terrain.skeleton, []
-        for row, col in (start, goal):
-            way = ascend(terrain.transform.squared, terrain.passable, skeleton, row, col)
-            rows, cols = way[~skeleton[way[:, 0], way[:, 1]]].T
-            skeleton[rows, cols] = True
-            opened.append((rows, cols))
-        try:
-            return self._search(terrain, skeleton, start, goal, cancelled)
-        finally:
-            for rows, cols in opened:
-                skeleton[rows, cols] = False
+        with _opened(terrain, [start, goal]) as allowed:
+            return self._search(terrain, allowed, start, goal, cancelled)
+
+    def _lengths(
+        self,
+        terrain: Terrain,
+        start: tuple[int, int],
+        goals: NDArray[np.int64],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.float64]:
+        """Along the skeleton: the order of the goals is what counts, and plans shorten all ways alike."""
+        free_of_charge = ClearancePrice(terrain.threshold_m, terrain.threshold_m, 0.0)
+        with _opened(terrain, [start, *((int(row), int(col)) for row, col in goals)]) as allowed:
+            return find_costs(
+                allowed, terrain.passable, terrain.clearance_m, free_of_charge, start, goals, cancelled
+            )
 
     def _search(
         self,
@@ -107,3 +112,18 @@ class Skeleton(FieldPlanner):
             return terrain
         clearance_m = (math.sqrt(squared) - 0.5) * terrain.grid.resolution_m
         return Terrain(terrain.grid, clearance_m, self._taste.separation, terrain.transform)
+
+
+@contextlib.contextmanager
+def _opened(terrain: Terrain, ends: Iterable[tuple[int, int]]) -> Iterator[NDArray[np.bool_]]:
+    """The skeleton with the ways up to it, for one search: a copy of a large map costs more than that."""
+    skeleton, ways = terrain.skeleton, []
+    for row, col in ends:
+        way = ascend(terrain.transform.squared, terrain.passable, skeleton, row, col)
+        ways.append(way[~skeleton[way[:, 0], way[:, 1]]].T)
+        skeleton[tuple(ways[-1])] = True
+    try:
+        yield skeleton
+    finally:
+        for way in ways:
+            skeleton[tuple(way)] = False
