@@ -120,37 +120,36 @@ def _scan_rows(cells, nearest_row, look, box, squared, row, col):  # type: ignor
             c = end
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _free_run(r, run, closed, nearest_row, origin, squared, row, col, site, height, begin):  # type: ignore[no-untyped-def]  # numba kernel
     """Lower envelope of the parabolas of columns first-1 .. end, read off at write .. until-1."""
     first, end, write, until = run
-    top = -1
+    top, s, h, t = -1, 0, 0, first  # the envelope's last parabola, kept out of the arrays
     if closed[0]:
-        top = 0
-        site[0], height[0], begin[0] = first - 1, 0, first
+        top, s = 0, first - 1
+        site[0], height[0], begin[0] = s, 0, first
     for u in range(first, end + 1 if closed[1] else end):
         g = nearest_row[u - origin] - r if u < end else 0
         if g <= _NONE // 2:
             continue  # nothing seen in this column
         g2 = g * g
-        while top >= 0:
-            t = begin[top]
-            if (t - site[top]) ** 2 + height[top] <= (t - u) ** 2 + g2:
-                break
+        while top >= 0 and (t - s) * (t - s) + h > (t - u) * (t - u) + g2:
             top -= 1
-        if top < 0:
-            start = first
-        else:
+            if top >= 0:
+                s, h, t = site[top], height[top], begin[top]
+        start = first
+        if top >= 0:
             # the quotient of exact integers this small is never rounded across an integer
-            rise = u * u - site[top] * site[top] + g2 - height[top]
-            start = 1 + math.floor(rise / (2.0 * (u - site[top])))
+            rise = u * u - s * s + g2 - h
+            start = 1 + math.floor(rise / (2.0 * (u - s)))
         if start < end:
             top += 1
-            site[top], height[top], begin[top] = u, g2, start
+            s, h, t = u, g2, start
+            site[top], height[top], begin[top] = s, h, t
     for x in range(until - 1, write - 1, -1):
-        while begin[top] > x:
+        while t > x:
             top -= 1
-        s = site[top]
-        squared[r, x] = (x - s) ** 2 + height[top]
+            s, h, t = site[top], height[top], begin[top]
+        squared[r, x] = (x - s) * (x - s) + h
         col[r, x] = s
         row[r, x] = nearest_row[s - origin] if first <= s < end else r

@@ -26,7 +26,7 @@ from explore_bt_planners.shortcut import take_shortcuts
 from explore_bt_planners.smoothing import ClearanceFloor, smooth
 from explore_bt_planners.terrain import SLACK_M, Terrain
 from explore_bt_planners.terrain_cache import TerrainCache
-from explore_bt_planners.warm_up import practice_grid
+from explore_bt_planners.warm_up import later_states, practice_grid
 
 __all__ = ["FieldPlanner", "FieldPlannerOptions"]
 
@@ -67,14 +67,21 @@ class FieldPlanner(Planner):
     def __init__(self, options: FieldPlannerOptions, separation: float = 1.7) -> None:
         super().__init__(options)
         self._options = options
-        self._terrains = TerrainCache(separation)
-        self._memory = RouteMemory(options.hysteresis)
+        self._separation = separation
+        self._terrains, self._memory = self._empty()
         self._busy = Lock()
 
+    def _empty(self) -> tuple[TerrainCache, RouteMemory]:
+        return TerrainCache(self._separation), RouteMemory(self._options.hysteresis)
+
     def setup(self, context: RobotContext) -> None:
-        """Compile every kernel on a practice map."""
-        grid, start, goal = practice_grid(context.footprint_radius_m + self._options.margin)
-        self.plan(grid, start, goal, context.footprint_radius_m)
+        """Compile every kernel on a practice map that changes and grows."""
+        radius_m = context.footprint_radius_m
+        grid, start, goal = practice_grid(radius_m + self._options.margin)
+        for state in (grid, *later_states(grid)):
+            self.plan(state, start, goal, radius_m)
+        self.distances(grid, start, [goal], radius_m)
+        self._terrains, self._memory = self._empty()
 
     def plan(
         self,

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from explore_bt.types import GridWindow, OccupancyGrid
@@ -43,7 +44,9 @@ class Terrain:
     @cached_property
     def clearance_m(self) -> NDArray[np.float32]:
         """(rows, cols) float32, metres; equal to ``explore_bt.exploration.clearance_field``."""
-        return self._clearance(self.transform.squared)
+        field = np.empty(self.transform.squared.shape, dtype=np.float32)
+        _write_clearance(self.transform.squared, self.grid.resolution_m, field)
+        return field
 
     @cached_property
     def passable(self) -> NDArray[np.bool_]:
@@ -101,7 +104,7 @@ class Terrain:
         fields.pop("component", None)
         squared = self.transform.squared[window.slices]
         if "clearance_m" in fields:
-            self.clearance_m[window.slices] = self._clearance(squared)
+            _write_clearance(squared, self.grid.resolution_m, self.clearance_m[window.slices])
         if "passable" in fields:
             self.passable[window.slices] = squared >= self.min_squared
         if "skeleton" in fields:
@@ -141,9 +144,10 @@ class Terrain:
     def _mark(self, window: GridWindow) -> None:
         mark_axis(self.skeleton, self.transform, self.min_squared, self._separation_cells, window)
 
-    def _clearance(self, squared: NDArray[np.int32]) -> NDArray[np.float32]:
-        field = np.sqrt(squared, dtype=np.float32)
-        field -= np.float32(0.5)
-        np.maximum(field, 0.0, out=field)
-        field *= np.float32(self.grid.resolution_m)
-        return field
+
+@njit(cache=True)
+def _write_clearance(squared, resolution, field):  # type: ignore[no-untyped-def]  # numba kernel
+    half, cell = np.float32(0.5), np.float32(resolution)
+    for r in range(squared.shape[0]):
+        for c in range(squared.shape[1]):
+            field[r, c] = max(np.sqrt(np.float32(squared[r, c])) - half, np.float32(0.0)) * cell
