@@ -8,6 +8,7 @@ import pytest
 import yaml
 from explore_bt_planners import GridAstar, Skeleton
 from explore_bt_planners.feature_transform import feature_transform
+from explore_bt_planners.smoothing import ClearanceFloor, smooth, turn_points
 from explore_bt_planners.terrain import Terrain
 
 from explore_bt.errors import GoalBlocked, GoalUnknown, NoPath, StartBlocked
@@ -93,6 +94,44 @@ def test_paths_do_not_bend_more_sharply_than_a_robot_drives():
             kinks.append(np.abs(np.diff(np.unwrap(yaw))).max(initial=0.0))
     assert np.quantile(kinks, 0.9) < math.radians(30)
     assert max(kinks) < math.radians(60)
+
+
+def turn_angles(path):
+    steps = np.diff(path.poses[:, :2], axis=0)
+    heading = np.arctan2(steps[:, 1], steps[:, 0])
+    return np.angle(np.exp(1j * np.diff(heading))), np.hypot(*steps.T)
+
+
+@pytest.mark.parametrize(
+    "make", [skeleton, lambda: GridAstar(GridAstar.Options())], ids=["skeleton", "grid_astar"]
+)
+def test_curvature_is_continuous_between_places_where_the_robot_turns(make):
+    jumps = []
+    for seed in range(8):
+        grid = cluttered(seed)
+        planner = make()
+        for start, goal in pairs_in(grid, 12, seed):
+            path = planner.plan(grid, start, goal, R)
+            turns, steps = turn_angles(path)
+            driven = np.abs(turns) <= math.radians(40)
+            curvature = turns / (0.5 * (steps[1:] + steps[:-1]))
+            jumps.extend(np.abs(np.diff(curvature))[driven[1:] & driven[:-1]])
+            away = path.poses[1:-1, 2] - np.arctan2(*np.diff(path.poses[1:, :2], axis=0).T[::-1])
+            assert np.abs(np.angle(np.exp(1j * away))).max(initial=0.0) <= math.radians(25)
+    # a polyline's corner of 45 degrees is a jump of 8 per metre; a bend of 0.3 m radius is entered in 0.1 m
+    assert np.quantile(jumps, 0.999) < 3.4
+    assert max(jumps) < 7.8
+
+
+def test_a_bend_that_cannot_be_driven_is_a_turn_in_place_and_the_rest_is_smooth():
+    lane = np.array([[100.5, 20.5], [100.5, 110.5], [180.5, 110.5]])
+    clearance = np.zeros((200, 200), dtype=np.float32)  # a lane as wide as the line itself
+    clearance[20:112, 100:102] = clearance[110:112, 100:182] = 0.3
+    points = smooth(lane, clearance, ClearanceFloor(0.25, 0.25, 0.0), 2.0)
+    corners = turn_points(points)
+    assert len(corners) == 1
+    assert np.hypot(*(points[corners[0]] - lane[1])) < 2.0
+    assert all(clearance[int(v), int(u)] >= 0.25 for u, v in points)
 
 
 def corridor_with_gap(free_cells, wall=3):

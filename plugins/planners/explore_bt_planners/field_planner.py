@@ -23,7 +23,7 @@ from explore_bt_planners.route_memory import RouteMemory
 from explore_bt_planners.sampling import clearances_at, segment_is_clear
 from explore_bt_planners.search import ClearancePrice
 from explore_bt_planners.shortcut import take_shortcuts
-from explore_bt_planners.smoothing import ClearanceFloor, smooth
+from explore_bt_planners.smoothing import ClearanceFloor, smooth, turn_points
 from explore_bt_planners.terrain import SLACK_M, Terrain
 from explore_bt_planners.terrain_cache import TerrainCache
 from explore_bt_planners.warm_up import later_states, practice_grid
@@ -248,6 +248,8 @@ def _path_of(terrain: Terrain, points: NDArray[np.float64], final_yaw_rad: float
     if len(points) > 1:
         ahead = np.diff(points, axis=0)
         tangent = np.concatenate((ahead[:1], ahead[:-1] + ahead[1:], ahead[-1:]))
+        turns = turn_points(points)
+        tangent[turns] = ahead[turns]
         yaw[:-1] = np.arctan2(tangent[:-1, 1], tangent[:-1, 0])
     return Path(np.column_stack((terrain.to_metres(points), yaw)), clearance)
 
