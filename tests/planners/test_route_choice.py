@@ -84,6 +84,27 @@ def test_an_older_or_equal_revision_is_planned_as_if_for_the_first_time():
             assert np.array_equal(planner.plan(grid, WEST, EAST, R).poses, fresh.poses)
 
 
+def test_travel_time_as_price_avoids_the_gap_that_is_driven_at_a_crawl():
+    cells = np.full((120, 160), FREE, dtype=np.int8)
+    cells[:, 78:82] = OCCUPIED
+    cells[50:62, 78:82], cells[80:115, 78:82] = FREE, FREE  # a tight gap ahead, a wide one aside
+    for c in range(70, 90):
+        cells[[49, 62], c] = OCCUPIED
+    grid = OccupancyGrid(cells, 0.05, (0.0, 0.0), 1)
+    start, goal = Pose2(2.5, 2.8, 0.0), Pose2(5.5, 2.8, 0.0)
+    short = skeleton(clearance_weight=0.0).plan(grid, start, goal, R)
+    quick = skeleton(slow_below=0.1).plan(grid, start, goal, R)
+    assert seconds(quick) < seconds(short)
+    assert quick.length_m > short.length_m
+
+
+def seconds(path):
+    """Driven at 0.5 m/s, less in proportion where there is less than 0.1 m beside the footprint."""
+    steps = np.hypot(*np.diff(path.poses[:, :2], axis=0).T)
+    room = path.clearance_m[1:] - (R + 0.02)
+    return float((steps / (0.5 * np.clip(room / 0.1, 0.2, 1.0))).sum())
+
+
 def clutter(seed):
     rng = np.random.default_rng(seed)
     cells = np.full((130, 130), FREE, dtype=np.int8)
@@ -121,8 +142,6 @@ def test_the_widest_passage_is_the_widest_there_is(seed):
             assert best < R
             continue
         points, _ = points_along(path, 0.01)
-        cells = grid.cells_of(points)
-        assert field[cells[:, 0], cells[:, 1]].min() >= best - 1e-6
         assert exact_clearance(grid, points).min() >= best - 0.002
 
 

@@ -22,7 +22,12 @@ def random_mask(seed, shape=(40, 50), share=0.3):
     return mask
 
 
+TIMED = ClearancePrice(1.0, 3.0, 0.0, 1.5)
+
+
 def price(clearance, wanted):
+    if wanted.slow_m:
+        return 1.0 / np.clip(1.0 - (wanted.comfortable_m - clearance) / wanted.slow_m, 0.2, 1.0)
     share = np.clip(
         (wanted.comfortable_m - clearance) / max(wanted.comfortable_m - wanted.floor_m, 1e-9), 0, None
     )
@@ -54,7 +59,7 @@ def route_cost(route, clearance, wanted):
 
 
 @pytest.mark.parametrize("seed", range(12))
-@pytest.mark.parametrize("wanted", [FLAT, ClearancePrice(1.0, 3.0, 2.0)])
+@pytest.mark.parametrize("wanted", [FLAT, ClearancePrice(1.0, 3.0, 2.0), TIMED])
 def test_a_route_is_as_short_as_dijkstra_s(seed, wanted):
     mask = random_mask(seed, share=0.15 + 0.02 * seed)
     clearance = np.random.default_rng(seed).uniform(1.0, 4.0, mask.shape).astype(np.float32)

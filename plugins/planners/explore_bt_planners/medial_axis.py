@@ -56,14 +56,16 @@ def _mark(squared, row, col, min_squared, min_separation_squared, box, axis):  #
     axis[row0:row1, col0:col1] = False
     for r in range(max(row0 - 1, 0), row1):
         above = min(r + 1, rows - 1)
+        own, up = squared[r], squared[above]
+        own_row, own_col, up_row, up_col = row[r], col[r], row[above], col[above]
         for c in range(max(col0 - 1, 0), col1):  # every cell with the one to its right and the one above
             right = min(c + 1, cols - 1)
-            if max(squared[r, c], squared[r, right], squared[above, c]) < min_squared:
+            if own[c] < min_squared and own[right] < min_squared and up[c] < min_squared:
                 continue
-            dr, dc = row[r, right] - row[r, c], col[r, right] - col[r, c]
+            dr, dc = own_row[right] - own_row[c], own_col[right] - own_col[c]
             if dr * dr + dc * dc >= min_separation_squared:
                 _mark_clearer(squared, min_squared, box, r, c, r, right, axis)
-            dr, dc = row[above, c] - row[r, c], col[above, c] - col[r, c]
+            dr, dc = up_row[c] - own_row[c], up_col[c] - own_col[c]
             if dr * dr + dc * dc >= min_separation_squared:
                 _mark_clearer(squared, min_squared, box, r, c, above, c, axis)
 

@@ -20,23 +20,36 @@ _COL = (1, -1, 0, 0, 1, -1, 1, -1)
 _FOUND, _EXHAUSTED, _OPEN = 1, 2, 0
 _CLOSED, _START = 16, 9
 _SLICE = 4000
+_SLOWEST_SHARE = 0.2  # of full speed, as controllers drive where it is tight
 _NOWHERE = -1  # a goal that no search ends at: all of the floor is settled
 
 
 @dataclass(frozen=True, slots=True)
 class ClearancePrice:
-    """What a metre costs where it is tight: 1 from ``comfortable_m`` up, ``1 + weight`` at the floor."""
+    """What a metre costs where it is tight: 1 from ``comfortable_m`` up, ``1 + weight`` at the floor.
+
+    With ``slow_m``, the time it takes instead, 1 being a metre at full speed: speed falls in proportion over
+    that much clearance below ``comfortable_m``, to a fifth.
+    """
 
     floor_m: float
     comfortable_m: float
     weight: float
+    slow_m: float = 0.0
+
+    @property
+    def terms(self) -> tuple[float, float, float, float]:
+        """For the kernels."""
+        return (self.floor_m, self.comfortable_m, self.weight, self.slow_m)
 
 
 @njit(cache=True)
-def price_at(clearance, floor, comfortable, weight):  # type: ignore[no-untyped-def]  # numba kernel
+def price_at(clearance, floor, comfortable, weight, slow):  # type: ignore[no-untyped-def]  # numba kernel
     """Cost of a metre at this clearance."""
-    if clearance >= comfortable or weight == 0.0:
+    if clearance >= comfortable:
         return 1.0
+    if slow > 0.0:
+        return 1.0 / max(1.0 - (comfortable - clearance) / slow, _SLOWEST_SHARE)
     share = (comfortable - clearance) / max(comfortable - floor, 1e-9)
     return 1.0 + weight * share * share
 
@@ -125,7 +138,7 @@ def _search(
     first = start[0] * cols + start[1]
     keys[0], nodes[0], size, state = 0.0, first, 1, _OPEN
     mark[first] = _START
-    terms = (price.floor_m, price.comfortable_m, price.weight)
+    terms = price.terms
     while state == _OPEN:
         if cancelled():
             raise Cancelled("the search was cancelled by its caller")
@@ -146,6 +159,7 @@ def _expand(  # type: ignore[no-untyped-def]  # numba kernel
     floor,
     comfortable,
     weight,
+    slow,
     goal,
     budget,
     keys,
@@ -168,7 +182,7 @@ def _expand(  # type: ignore[no-untyped-def]  # numba kernel
         if here == goal:
             return _FOUND, size
         r, c = here // cols, here % cols
-        price_here = price_at(clearance[r, c], floor, comfortable, weight)
+        price_here = price_at(clearance[r, c], floor, comfortable, weight, slow)
         for k in range(8):
             nr, nc = r + _ROW[k], c + _COL[k]
             if nr < 0 or nr >= rows or nc < 0 or nc >= cols or not allowed[nr, nc]:
@@ -178,11 +192,11 @@ def _expand(  # type: ignore[no-untyped-def]  # numba kernel
                 sr, sc = (r, nc) if passable[r, nc] else (nr, c)
                 if not passable[sr, sc] or allowed[sr, sc]:
                     continue  # no way, or one that straight steps find
-                beside = price_at(clearance[sr, sc], floor, comfortable, weight)
+                beside = price_at(clearance[sr, sc], floor, comfortable, weight, slow)
             there = nr * cols + nc
             if mark[there] & _CLOSED:
                 continue
-            price_there = price_at(clearance[nr, nc], floor, comfortable, weight)
+            price_there = price_at(clearance[nr, nc], floor, comfortable, weight, slow)
             step = 1.0 if k < 4 or beside > 0.0 else math.sqrt(2.0)
             total = cost[here] + 0.5 * step * (price_here + price_there) + beside
             if mark[there] == 0 or total < cost[there]:

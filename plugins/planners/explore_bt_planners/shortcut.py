@@ -45,7 +45,7 @@ def take_shortcuts(
     line, spacing_cells = polyline, _SPACING_M / resolution_m
     for _ in range(_ROUNDS):
         nodes = _spaced(line, spacing_cells)
-        terms = (price.floor_m, price.comfortable_m, price.weight)
+        terms = price.terms
         shorter = _cheapest(line, nodes, clearance_m, *terms, _REACH_M / resolution_m, resolution_m)
         enough = length_of(shorter) > _CLEARLY * length_of(line)
         line = subdivide(shorter, spacing_cells)
@@ -61,19 +61,19 @@ def polyline_cost(
     resolution_m: float,
 ) -> float:
     """Price of a way in cells of roomy floor; infinite where it falls below the price's floor."""
-    terms = (price.floor_m, price.comfortable_m, price.weight)
+    terms = price.terms
     return float(_polyline_cost(polyline, clearance_m, *terms, resolution_m))
 
 
 @njit(cache=True)
-def _polyline_cost(polyline, clearance, floor, comfortable, weight, resolution):  # type: ignore[no-untyped-def]  # numba kernel
+def _polyline_cost(polyline, clearance, floor, comfortable, weight, slow, resolution):  # type: ignore[no-untyped-def]  # numba kernel
     total, lowest = 0.0, floor - SLACK_M
     for i in range(len(polyline) - 1):
         u0, v0 = polyline[i]
         u1, v1 = polyline[i + 1]
         if not segment_is_clear(clearance, u0, v0, u1, v1, lowest, resolution):
             return np.inf
-        total += _line_cost(clearance, u0, v0, u1, v1, lowest, comfortable, weight, np.inf)
+        total += _line_cost(clearance, u0, v0, u1, v1, lowest, comfortable, weight, slow, np.inf)
     return total
 
 
@@ -88,7 +88,7 @@ def _spaced(polyline: NDArray[np.float64], spacing_cells: float) -> NDArray[np.i
 
 
 @njit(cache=True)
-def _line_cost(clearance, u0, v0, u1, v1, floor, comfortable, weight, give_up_above):  # type: ignore[no-untyped-def]  # numba kernel
+def _line_cost(clearance, u0, v0, u1, v1, floor, comfortable, weight, slow, give_up_above):  # type: ignore[no-untyped-def]  # numba kernel
     """Price of a straight line by the cells it crosses; infinite if too tight or above the bound."""
     length = math.hypot(u1 - u0, v1 - v0)
     steps = max(1, math.ceil(length / _SAMPLE_CELLS))
@@ -99,14 +99,14 @@ def _line_cost(clearance, u0, v0, u1, v1, floor, comfortable, weight, give_up_ab
         here = clearance[int(v0 + t * (v1 - v0)), int(u0 + t * (u1 - u0))]
         if here < floor:
             return np.inf
-        surplus += piece * (price_at(here, floor, comfortable, weight) - 1.0)
+        surplus += piece * (price_at(here, floor, comfortable, weight, slow) - 1.0)
         if length + surplus >= give_up_above:
             return np.inf
     return length + surplus
 
 
 @njit(cache=True)
-def _cheapest(polyline, nodes, clearance, floor, comfortable, weight, reach, resolution):  # type: ignore[no-untyped-def]  # numba kernel
+def _cheapest(polyline, nodes, clearance, floor, comfortable, weight, slow, reach, resolution):  # type: ignore[no-untyped-def]  # numba kernel
     count = len(nodes)
     best = np.full(count, np.inf)
     came = np.zeros(count, dtype=np.int64)
@@ -118,7 +118,7 @@ def _cheapest(polyline, nodes, clearance, floor, comfortable, weight, reach, res
             u0, v0 = polyline[p]
             u1, v1 = polyline[p + 1]
             here = max(floor, clearance_at(clearance, 0.5 * (u0 + u1), 0.5 * (v0 + v1)))
-            along += math.hypot(u1 - u0, v1 - v0) * price_at(here, floor, comfortable, weight)
+            along += math.hypot(u1 - u0, v1 - v0) * price_at(here, floor, comfortable, weight, slow)
         best[j], came[j] = along * (1.0 + 1e-9), j - 1
         u1, v1 = polyline[nodes[j]]
         for i in range(j):  # far ones first: they often win, and then rule the near ones out
@@ -127,7 +127,7 @@ def _cheapest(polyline, nodes, clearance, floor, comfortable, weight, reach, res
             if length > reach or best[i] + length >= best[j]:
                 continue
             cost = best[i] + _line_cost(
-                clearance, u0, v0, u1, v1, floor, comfortable, weight, best[j] - best[i]
+                clearance, u0, v0, u1, v1, floor, comfortable, weight, slow, best[j] - best[i]
             )
             if cost < best[j] and segment_is_clear(clearance, u0, v0, u1, v1, floor, resolution):
                 best[j], came[j], straight[j] = cost, i, True

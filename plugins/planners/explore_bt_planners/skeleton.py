@@ -32,6 +32,12 @@ class SkeletonOptions(FieldPlannerOptions):
     clearance_weight: float = Field(
         1.5, ge=0.0, description="what a metre at the least clearance costs more than a comfortable one"
     )
+    slow_below: Length = Field(
+        0.0,
+        ge=0.0,
+        description="room beside the footprint (with margin) under which the controller slows down; above 0, "
+        "a metre costs the time it takes, whatever the other two prices say",
+    )
     widest: bool = Field(
         False, description="take the way whose narrowest place is the widest there is, however long it gets"
     )
@@ -52,6 +58,9 @@ class Skeleton(FieldPlanner):
         self._taste = options
 
     def _price(self, terrain: Terrain) -> ClearancePrice:
+        if self._taste.slow_below:
+            full_m = terrain.threshold_m + self._taste.slow_below
+            return ClearancePrice(terrain.threshold_m, full_m, 0.0, self._taste.slow_below)
         comfortable = max(self._taste.comfortable, terrain.threshold_m)
         return ClearancePrice(terrain.threshold_m, comfortable, self._taste.clearance_weight)
 
