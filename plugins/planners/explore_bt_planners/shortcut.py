@@ -8,7 +8,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from explore_bt.types import way_along
 from explore_bt_planners.polyline import length_of, subdivide
 from explore_bt_planners.sampling import clearance_at, segment_is_clear
 from explore_bt_planners.search import ClearancePrice, price_at
@@ -77,14 +76,26 @@ def _polyline_cost(polyline, clearance, floor, comfortable, weight, slow, resolu
     return total
 
 
-def _spaced(polyline: NDArray[np.float64], spacing_cells: float) -> NDArray[np.int64]:
+@njit(cache=True)
+def _spaced(polyline, spacing_cells):  # type: ignore[no-untyped-def]  # numba kernel
     """Indices of points about ``spacing_cells`` apart, both ends included."""
-    along = way_along(polyline)
-    count = max(1, round(along[-1] / spacing_cells))
-    picked = np.searchsorted(along, np.linspace(0.0, along[-1], count + 1))
-    picked[0], picked[-1] = 0, len(polyline) - 1
-    picked = np.minimum(picked, len(polyline) - 1)
-    return picked[np.append(True, np.diff(picked) > 0)]
+    total = 0.0
+    for i in range(1, len(polyline)):
+        u, v = polyline[i] - polyline[i - 1]
+        total += math.hypot(u, v)
+    step = total / max(1, round(total / spacing_cells))
+    picked = np.empty(len(polyline), dtype=np.int64)
+    picked[0] = 0
+    count, along, due = 1, 0.0, step
+    for i in range(1, len(polyline) - 1):
+        u, v = polyline[i] - polyline[i - 1]
+        along += math.hypot(u, v)
+        if along >= due:
+            picked[count] = i
+            count += 1
+            due = step * (math.floor(along / step) + 1)
+    picked[count] = len(polyline) - 1
+    return picked[: count + 1].copy()
 
 
 @njit(cache=True)
