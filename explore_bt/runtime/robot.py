@@ -32,7 +32,7 @@ from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.tree import Blackboard, PortUnsetError, Status, halt
-from explore_bt.types import Estimate, Health, Measurement, Path, Pose2, Scan2D, Trajectory
+from explore_bt.types import Estimate, Health, Measurement, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
 __all__ = ["Robot"]
 
@@ -66,6 +66,7 @@ class Robot:
         self.tree = build_tree(spec.tree, self, self.blackboard)
         self._scan: Scan2D | None = None
         self._view: MapView | None = None
+        self._planned_on: OccupancyGrid | None = None
         self._tight = TightPlaces()
         self._slam_fault = ""
         self._logged: set[tuple[str, str]] = set()
@@ -175,7 +176,22 @@ class Robot:
 
     def _plan(self, goal: Pose2, radius_m: float) -> Path:
         here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
-        return self._planner.plan(self.view().grid, here, goal, radius_m, lambda: self._stop.is_raised)
+        grid = self.view().grid
+        self._tell_change(grid)
+        return self._planner.plan(grid, here, goal, radius_m, lambda: self._stop.is_raised)
+
+    def _tell_change(self, grid: OccupancyGrid) -> None:
+        """Tell the planner where the map differs from the one planned on before, if SLAM knows.
+
+        A map with tight places marked has cells that SLAM knows nothing of: then nobody knows.
+        """
+        plain = grid if grid is self.slam.grid() else None
+        before, self._planned_on = self._planned_on, plain
+        if before is None or plain is None or before is plain:
+            return
+        window = self.slam.changed_since(before.revision)
+        if window is not None:
+            self._planner.expect_change(before, plain, window)
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place that proved too tight for the safety gate."""

@@ -262,6 +262,21 @@ class PlannerContract(ABC):
             path = again.plan(grid, _LEFT, _RIGHT, RADIUS_M)
             assert np.array_equal(path.poses, first.poses), "the same question got another answer"
 
+    def test_distances_are_about_as_long_as_the_paths(self, planner: Planner) -> None:
+        """One pass for many goals; inf for those in a wall, in the unknown, behind a closed wall."""
+        grid = _two_rooms()
+        goals = [_RIGHT, Pose2(1.0, 4.0, 0.0), Pose2(3.0, 3.4, 0.0), Pose2(6.5, 4.2, 0.0), _LEFT]
+        nowhere = [Pose2(4.0, 1.0, 0.0), Pose2(20.0, 1.0, 0.0)]
+        found = planner.distances(grid, _LEFT, [*goals, *nowhere], RADIUS_M)
+        driven = np.array([planner.plan(grid, _LEFT, goal, RADIUS_M).length_m for goal in goals])
+        assert found.shape == (7,), "distances() needs one value a goal"
+        assert np.isinf(found[5:]).all(), "a goal in a wall or outside of the map cannot be reached"
+        assert (np.abs(found[:5] - driven) <= 0.35 * driven + 0.1).all(), (
+            f"distances() said {found[:5].round(2)} m, the paths have {driven.round(2)} m"
+        )
+        closed = planner.distances(_two_rooms(door=False), _LEFT, goals, RADIUS_M)
+        assert np.isinf(closed[[0, 3]]).all(), "there is no way through a closed wall"
+
     def test_a_changed_map_is_seen(self, planner: Planner) -> None:
         """A new grid with the same revision from another source is another map."""
         planner.plan(_two_rooms(), _LEFT, _RIGHT, RADIUS_M)

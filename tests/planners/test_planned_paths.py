@@ -8,6 +8,7 @@ import pytest
 import yaml
 from explore_bt_planners import GridAstar, Skeleton
 from explore_bt_planners.feature_transform import feature_transform
+from explore_bt_planners.smoothing import ClearanceFloor, smooth, turn_points
 from explore_bt_planners.terrain import Terrain
 
 from explore_bt.errors import GoalBlocked, GoalUnknown, NoPath, StartBlocked
@@ -95,6 +96,46 @@ def test_paths_do_not_bend_more_sharply_than_a_robot_drives():
     assert max(kinks) < math.radians(60)
 
 
+def turn_angles(path):
+    steps = np.diff(path.poses[:, :2], axis=0)
+    heading = np.arctan2(steps[:, 1], steps[:, 0])
+    return np.angle(np.exp(1j * np.diff(heading))), np.hypot(*steps.T)
+
+
+@pytest.mark.parametrize(
+    ("make", "usual_jump"),
+    [(skeleton, 3.5), (lambda: GridAstar(GridAstar.Options()), 5.0)],
+    ids=["skeleton", "grid_astar"],
+)
+def test_curvature_is_continuous_between_places_where_the_robot_turns(make, usual_jump):
+    jumps = []
+    for seed in range(8):
+        grid = cluttered(seed)
+        planner = make()
+        for start, goal in pairs_in(grid, 12, seed):
+            path = planner.plan(grid, start, goal, R)
+            turns, steps = turn_angles(path)
+            driven = np.abs(turns) <= math.radians(40)
+            curvature = turns / (0.5 * (steps[1:] + steps[:-1]))
+            jumps.extend(np.abs(np.diff(curvature))[driven[1:] & driven[:-1]])
+            away = path.poses[1:-1, 2] - np.arctan2(*np.diff(path.poses[1:, :2], axis=0).T[::-1])
+            assert np.abs(np.angle(np.exp(1j * away))).max(initial=0.0) <= math.radians(25)
+    # from one sample to the next, 0.1 m on; a corner of 45 degrees left unsmoothed is a jump of 8 per metre
+    assert np.quantile(jumps, 0.999) < usual_jump
+    assert max(jumps) < 7.8
+
+
+def test_a_bend_that_cannot_be_driven_is_a_turn_in_place_and_the_rest_is_smooth():
+    lane = np.array([[100.5, 20.5], [100.5, 110.5], [180.5, 110.5]])
+    clearance = np.zeros((200, 200), dtype=np.float32)  # a lane as wide as the line itself
+    clearance[20:111, 100] = clearance[110, 100:182] = 0.3
+    points = smooth(lane, clearance, ClearanceFloor(0.29, 0.29, 0.0), 2.0)
+    corners = turn_points(points)
+    assert len(corners) == 1
+    assert np.hypot(*(points[corners[0]] - lane[1])) < 2.0
+    assert all(clearance[int(v), int(u)] >= 0.29 for u, v in points)
+
+
 def corridor_with_gap(free_cells, wall=3):
     cells = np.zeros((60, 100), dtype=np.int8)
     cells[:, 50 : 50 + wall] = OCCUPIED
@@ -176,11 +217,11 @@ def test_an_all_unknown_map_and_a_map_of_one_cell_are_refused_in_words():
 
 
 def test_several_plans_on_one_map_share_one_transform(monkeypatch):
-    from explore_bt_planners import terrain
+    from explore_bt_planners import terrain_cache
 
     made = []
-    original = terrain.feature_transform
-    monkeypatch.setattr(terrain, "feature_transform", lambda cells: made.append(1) or original(cells))
+    original = terrain_cache.feature_transform
+    monkeypatch.setattr(terrain_cache, "feature_transform", lambda cells: made.append(1) or original(cells))
     planner, grid = skeleton(), corridor_with_gap(18)
     for y in (0.5, 1.0, 2.0):
         planner.plan(grid, Pose2(1.0, y, 0.0), Pose2(4.0, 0.5, 0.0), R)

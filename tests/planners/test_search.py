@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.feature_transform import feature_transform
-from explore_bt_planners.search import ClearancePrice, find_route
+from explore_bt_planners.sampling import STEP_CELLS, clearances_at, segment_is_clear
+from explore_bt_planners.search import ClearancePrice, find_costs, find_route
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
@@ -21,7 +22,12 @@ def random_mask(seed, shape=(40, 50), share=0.3):
     return mask
 
 
+TIMED = ClearancePrice(1.0, 3.0, 0.0, 1.5)
+
+
 def price(clearance, wanted):
+    if wanted.slow_m:
+        return 1.0 / np.clip(1.0 - (wanted.comfortable_m - clearance) / wanted.slow_m, 0.2, 1.0)
     share = np.clip(
         (wanted.comfortable_m - clearance) / max(wanted.comfortable_m - wanted.floor_m, 1e-9), 0, None
     )
@@ -53,7 +59,7 @@ def route_cost(route, clearance, wanted):
 
 
 @pytest.mark.parametrize("seed", range(12))
-@pytest.mark.parametrize("wanted", [FLAT, ClearancePrice(1.0, 3.0, 2.0)])
+@pytest.mark.parametrize("wanted", [FLAT, ClearancePrice(1.0, 3.0, 2.0), TIMED])
 def test_a_route_is_as_short_as_dijkstra_s(seed, wanted):
     mask = random_mask(seed, share=0.15 + 0.02 * seed)
     clearance = np.random.default_rng(seed).uniform(1.0, 4.0, mask.shape).astype(np.float32)
@@ -62,6 +68,17 @@ def test_a_route_is_as_short_as_dijkstra_s(seed, wanted):
     assert (route is None) == np.isinf(best)
     if route is not None:
         assert route_cost(route, clearance.astype(float), wanted) == pytest.approx(best, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_costs_of_many_goals_are_dijkstra_s(seed):
+    mask = random_mask(seed, shape=(20, 25), share=0.3)
+    clearance = np.random.default_rng(seed).uniform(1.0, 4.0, mask.shape).astype(np.float32)
+    goals = np.argwhere(np.ones_like(mask))[::7]
+    wanted = ClearancePrice(1.0, 3.0, 2.0)
+    found = find_costs(mask, mask, clearance, wanted, (0, 0), goals, never)
+    best = [dijkstra_cost(mask, clearance.astype(float), wanted, (0, 0), tuple(goal)) for goal in goals]
+    assert found == pytest.approx(np.array(best), rel=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -115,3 +132,20 @@ def test_the_widest_way_is_the_one_found_by_trying_every_width(seed):
         if pieces[2, 2] and pieces[2, 2] == pieces[37, 37]:
             best = int(level)
     assert widest_squared(squared, (2, 2), (37, 37)) == best
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_segment_is_clear_where_every_sample_of_it_is(seed):
+    rng = np.random.default_rng(seed)
+    cells = np.where(rng.random((70, 90)) < 0.004, OCCUPIED, 0).astype(np.int8)
+    squared = feature_transform(cells).squared
+    clearance = (0.05 * np.maximum(np.sqrt(squared) - 0.5, 0.0)).astype(np.float32)
+    clear = []
+    for u0, v0, u1, v1 in rng.uniform(0.0, (90.0, 70.0, 90.0, 70.0), size=(300, 4)):
+        floor = float(rng.choice([0.1, 0.25, 0.4]))
+        count = max(1, int(np.ceil(np.hypot(u1 - u0, v1 - v0) / STEP_CELLS)))
+        t = np.arange(count + 1) / count
+        values = clearances_at(clearance, np.column_stack((u0 + t * (u1 - u0), v0 + t * (v1 - v0))))
+        clear.append(bool((values >= floor).all()))
+        assert segment_is_clear(clearance, u0, v0, u1, v1, floor, 0.05) == clear[-1]
+    assert 10 < sum(clear) < 290

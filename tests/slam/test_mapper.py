@@ -5,7 +5,7 @@ from explore_bt_slam.canvas import Canvas
 from explore_bt_slam.mapper import Mapper
 from explore_bt_slam.sweep import Sweep
 
-from explore_bt.types import FREE, Pose2
+from explore_bt.types import FREE, OCCUPIED, Pose2
 
 
 def disc(stamp_s: float, reach_m: float = 2.0) -> Sweep:
@@ -91,3 +91,28 @@ def test_changed_since_joins_the_windows_of_several_revisions() -> None:
     outside[window.slices] = False
     assert not outside.any()
     assert canvas.changed_since(last.revision + 1) is None
+
+
+def probe(stamp_s: float, reach_m: float) -> Sweep:
+    """One beam ahead, and one beside it that sees a chair leg of two cells."""
+    ends = np.array([[reach_m, 0.0], [1.0, 0.5]], dtype=np.float32)
+    return Sweep(stamp_s, np.zeros_like(ends), ends, np.ones(2, np.bool_))
+
+
+def test_an_obstacle_in_free_space_has_to_last_and_its_size_does_not_matter() -> None:
+    canvas = Canvas(0.05, 0.25)
+    for step in range(30):
+        canvas.draw(probe(0.1 * step, 3.0), Pose2.identity())
+    assert is_drawn(canvas, 1.0, 0.5), "a leg seen from the start is there"
+    drawn = []
+    for step in range(30, 40):
+        canvas.draw(probe(0.1 * step, 1.5), Pose2.identity())
+        drawn.append(is_drawn(canvas, 1.5, 0.0))
+    assert not any(drawn[:2]), "two returns after thirty beams that passed are no obstacle"
+    assert drawn[-1], "one that stays is, be it a single cell"
+
+
+def is_drawn(canvas: Canvas, x: float, y: float) -> bool:
+    grid = canvas.snapshot()
+    row, col = grid.cell_of(x, y)
+    return bool((grid.cells[row - 1 : row + 2, col - 1 : col + 2] == OCCUPIED).any())

@@ -29,7 +29,8 @@ def _flood(squared, start, goal, budget):  # type: ignore[no-untyped-def]  # num
     """Dijkstra with the lowest value so far as the key, highest first."""
     rows, cols = squared.shape
     seen = np.zeros(rows * cols, dtype=np.bool_)
-    keys, nodes = np.empty(4 * budget + 8), np.empty(4 * budget + 8, dtype=np.int64)
+    room = min(4 * budget, squared.size) + 8  # a cell is pushed once
+    keys, nodes = np.empty(room), np.empty(room, dtype=np.int64)
     size = push(keys, nodes, 0, -float(squared[start // cols, start % cols]), start)
     seen[start] = True
     for _ in range(budget):

@@ -5,32 +5,34 @@ from __future__ import annotations
 import contextlib
 import math
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from explore_bt.errors import Cancelled, GoalBlocked, NoPath, StartBlocked
+from explore_bt.errors import Cancelled, GoalBlocked, GoalUnknown, NoPath, StartBlocked
 from explore_bt.interfaces import Planner, PluginOptions, RobotContext, never
-from explore_bt.types import OccupancyGrid, Path, Pose2
+from explore_bt.types import GridWindow, OccupancyGrid, Path, Pose2
 from explore_bt.units import Length
 from explore_bt_planners.bottleneck import widest_squared
 from explore_bt_planners.endpoints import Departure, check_start, depart, settle
-from explore_bt_planners.polyline import without_repeats
-from explore_bt_planners.sampling import clearances_at, segment_clearance
+from explore_bt_planners.polyline import length_of, without_repeats
+from explore_bt_planners.route_memory import RouteMemory
+from explore_bt_planners.sampling import clearances_at, segment_is_clear
 from explore_bt_planners.search import ClearancePrice
 from explore_bt_planners.shortcut import take_shortcuts
-from explore_bt_planners.smoothing import ClearanceFloor, smooth
-from explore_bt_planners.terrain import SLACK_M, Terrain, TerrainCache
-from explore_bt_planners.warm_up import practice_grid
+from explore_bt_planners.smoothing import ClearanceFloor, smooth, turn_points
+from explore_bt_planners.terrain import SLACK_M, Terrain
+from explore_bt_planners.terrain_cache import TerrainCache
+from explore_bt_planners.warm_up import later_states, practice_grid
 
 __all__ = ["FieldPlanner", "FieldPlannerOptions"]
 
 _POSE_SPACING_M = 0.1
-_LINE_SPACING_M = 0.3
-_LINE_REACH_M = 6.0
 _SAME_PLACE_M = 0.02
+_ASK_S = 0.05  # how often a plan that waits for another one's end asks whether it is still wanted
 
 
 class FieldPlannerOptions(PluginOptions):
@@ -47,20 +49,39 @@ class FieldPlannerOptions(PluginOptions):
     leave_within: Length = Field(
         0.6, ge=0.0, description="how far a start too close to an obstacle may be from where the robot fits"
     )
+    hysteresis: float = Field(
+        0.1,
+        ge=0.0,
+        description="share by which a new route has to be cheaper than the rest of the old one, once the map "
+        "has changed",
+    )
 
 
 class FieldPlanner(Planner):
-    """Plans on the exact clearance of a map; subclasses say by which cells."""
+    """Plans on the exact clearance of a map; subclasses say by which cells.
+
+    What was derived from the map before is brought up to date where the map has changed. One plan is made
+    at a time; a second caller waits.
+    """
 
     def __init__(self, options: FieldPlannerOptions, separation: float = 1.7) -> None:
         super().__init__(options)
         self._options = options
-        self._terrains = TerrainCache(separation)
+        self._separation = separation
+        self._terrains, self._memory = self._empty()
+        self._busy = Lock()
+
+    def _empty(self) -> tuple[TerrainCache, RouteMemory]:
+        return TerrainCache(self._separation), RouteMemory(self._options.hysteresis)
 
     def setup(self, context: RobotContext) -> None:
-        """Compile every kernel on a practice map."""
-        grid, start, goal = practice_grid(context.footprint_radius_m + self._options.margin)
-        self.plan(grid, start, goal, context.footprint_radius_m)
+        """Compile every kernel on a practice map that changes and grows."""
+        radius_m = context.footprint_radius_m
+        grid, start, goal = practice_grid(radius_m + self._options.margin)
+        for state in (grid, *later_states(grid)):
+            self.plan(state, start, goal, radius_m)
+        self.distances(grid, start, [goal], radius_m)
+        self._terrains, self._memory = self._empty()
 
     def plan(
         self,
@@ -71,14 +92,56 @@ class FieldPlanner(Planner):
         cancelled: Callable[[], bool] = never,
     ) -> Path:
         """See ``Planner.plan``; the margin is given up where it leaves no way."""
+        with self._turn(cancelled):
+            try:
+                return self._plan(grid, start, goal, footprint_radius_m, self._options.margin, cancelled)
+            except (StartBlocked, GoalBlocked, NoPath) as refusal:
+                if self._options.margin == 0.0:
+                    raise
+                with contextlib.suppress(StartBlocked, GoalBlocked, NoPath):
+                    return self._plan(grid, start, goal, footprint_radius_m, 0.0, cancelled)
+                raise refusal
+
+    def distances(
+        self,
+        grid: OccupancyGrid,
+        start: Pose2,
+        goals: Sequence[Pose2],
+        footprint_radius_m: float,
+        cancelled: Callable[[], bool] = never,
+    ) -> NDArray[np.float64]:
+        """See ``Planner.distances``; for the footprint without the margin, on the map kept for plans."""
+        found = np.full(len(goals), np.inf)
+        with self._turn(cancelled):
+            _give_up_if(cancelled)
+            terrain = self._terrains.terrain(grid, footprint_radius_m)
+            check_start(terrain, start)
+            cells: dict[int, tuple[int, int]] = {}
+            for k, goal in enumerate(goals):
+                with contextlib.suppress(GoalBlocked, GoalUnknown):
+                    cells[k] = settle(terrain, goal, self._options.goal_tolerance)[1]
+            if not cells:
+                return found
+            towards = next(iter(cells.values()))
+            departure = depart(terrain, start, footprint_radius_m, self._options.leave_within, towards)
+            way_out = length_of(departure.points)
+            lengths = self._lengths(terrain, departure.cell, np.array(list(cells.values())), cancelled)
+            found[list(cells)] = (way_out + lengths) * grid.resolution_m
+        return found
+
+    def expect_change(self, before: OccupancyGrid, now: OccupancyGrid, window: GridWindow) -> None:
+        """See ``Planner.expect_change``."""
+        with self._turn(never):
+            self._terrains.expect(before, now, window)
+
+    @contextlib.contextmanager
+    def _turn(self, cancelled: Callable[[], bool]) -> Iterator[None]:
+        while not self._busy.acquire(timeout=_ASK_S):
+            _give_up_if(cancelled)
         try:
-            return self._plan(grid, start, goal, footprint_radius_m, self._options.margin, cancelled)
-        except (StartBlocked, GoalBlocked, NoPath) as refusal:
-            if self._options.margin == 0.0:
-                raise
-            with contextlib.suppress(StartBlocked, GoalBlocked, NoPath):
-                return self._plan(grid, start, goal, footprint_radius_m, 0.0, cancelled)
-            raise refusal
+            yield
+        finally:
+            self._busy.release()
 
     def _plan(
         self,
@@ -89,19 +152,21 @@ class FieldPlanner(Planner):
         margin_m: float,
         cancelled: Callable[[], bool],
     ) -> Path:
-        if cancelled():
-            raise Cancelled("the plan was cancelled by its caller")
+        _give_up_if(cancelled)
         terrain = self._terrains.terrain(grid, footprint_radius_m + margin_m)
         check_start(terrain, start)
         arrival, goal_cell = settle(terrain, goal, self._options.goal_tolerance)
         departure = depart(terrain, start, footprint_radius_m, self._options.leave_within, goal_cell)
-        self._check_connected(terrain, departure.cell, goal_cell, start, goal)
+        chosen = self._choose_width(terrain, departure.cell, goal_cell)
+        if chosen is not terrain:
+            terrain = chosen
+            arrival, goal_cell = settle(terrain, goal, self._options.goal_tolerance)
+            departure = depart(terrain, start, footprint_radius_m, self._options.leave_within, goal_cell)
         apart = float(np.hypot(*(arrival - departure.points[0]))) * grid.resolution_m
         if apart < _SAME_PLACE_M:
             return _path_of(terrain, departure.points[:1], goal.yaw_rad)
         polyline = self._polyline(terrain, departure, arrival, goal_cell, cancelled)
-        if cancelled():
-            raise Cancelled("the plan was cancelled by its caller")
+        _give_up_if(cancelled)
         points = self._smooth(terrain, departure, polyline)
         return _path_of(terrain, points, goal.yaw_rad)
 
@@ -113,20 +178,26 @@ class FieldPlanner(Planner):
         goal: tuple[int, int],
         cancelled: Callable[[], bool],
     ) -> NDArray[np.int64] | None:
-        """(N, 2) rows and columns of passable cells from start to goal."""
+        """(N, 2) rows and columns of passable cells from start to goal; None if nothing joins them."""
+
+    @abstractmethod
+    def _lengths(
+        self,
+        terrain: Terrain,
+        start: tuple[int, int],
+        goals: NDArray[np.int64],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.float64]:
+        """(N,) cells from start to each of (N, 2) rows and columns; inf where nothing joins them."""
 
     @abstractmethod
     def _price(self, terrain: Terrain) -> ClearancePrice:
         """What a metre costs."""
 
-    def _check_connected(
-        self, terrain: Terrain, start: tuple[int, int], goal: tuple[int, int], at: Pose2, to: Pose2
-    ) -> None:
-        if terrain.component[start] != terrain.component[goal]:
-            raise NoPath(
-                f"no passage from ({at.x:.2f}, {at.y:.2f}) to ({to.x:.2f}, {to.y:.2f}): "
-                + _what_is_missing(terrain, start, goal)
-            )
+    def _choose_width(self, terrain: Terrain, start: tuple[int, int], goal: tuple[int, int]) -> Terrain:
+        """The terrain to plan this way on: the one of the footprint, or one for a wider robot."""
+        del start, goal
+        return terrain
 
     def _polyline(
         self,
@@ -139,18 +210,20 @@ class FieldPlanner(Planner):
         """Start, way out of a tight start, shortened route, goal."""
         price = self._price(terrain)
         begin = departure.points[-1]
-        at_once = segment_clearance(terrain.clearance_m, *begin, *arrival, price.comfortable_m)
-        if at_once >= price.comfortable_m:
+        res = terrain.grid.resolution_m
+        if segment_is_clear(terrain.clearance_m, *begin, *arrival, price.comfortable_m, res):
             line = np.array([begin, arrival])
         else:
             cells = self._route(terrain, departure.cell, goal_cell, cancelled)
-            if cells is None:  # cannot be: the two are in one piece
-                raise NoPath("start and goal are in one piece of free space, but no route joins them")
+            if cells is None:
+                (x0, y0), (x1, y1) = terrain.to_metres(np.array([departure.points[0], arrival]))
+                raise NoPath(
+                    f"no passage from ({x0:.2f}, {y0:.2f}) to ({x1:.2f}, {y1:.2f}): "
+                    + _what_is_missing(terrain, departure.cell, goal_cell)
+                )
             line = without_repeats(np.concatenate((begin[None], cells[:, ::-1] + 0.5, arrival[None])))
-            res = terrain.grid.resolution_m
-            line = take_shortcuts(
-                line, terrain.clearance_m, price, _LINE_SPACING_M / res, _LINE_REACH_M / res
-            )
+            line = take_shortcuts(line, terrain.clearance_m, price, res)
+        line = self._memory.choose(terrain, self._terrains.lineage, line, price)
         return np.concatenate((departure.points[:-1], line))
 
     def _smooth(
@@ -164,12 +237,19 @@ class FieldPlanner(Planner):
         return smooth(without_repeats(polyline), terrain.clearance_m, floor, _POSE_SPACING_M / res)
 
 
+def _give_up_if(cancelled: Callable[[], bool]) -> None:
+    if cancelled():
+        raise Cancelled("the plan was cancelled by its caller")
+
+
 def _path_of(terrain: Terrain, points: NDArray[np.float64], final_yaw_rad: float) -> Path:
     clearance = clearances_at(terrain.clearance_m, points)
     yaw = np.full(len(points), final_yaw_rad)
     if len(points) > 1:
         ahead = np.diff(points, axis=0)
         tangent = np.concatenate((ahead[:1], ahead[:-1] + ahead[1:], ahead[-1:]))
+        turns = turn_points(points)
+        tangent[turns] = ahead[turns]
         yaw[:-1] = np.arctan2(tangent[:-1, 1], tangent[:-1, 0])
     return Path(np.column_stack((terrain.to_metres(points), yaw)), clearance)
 

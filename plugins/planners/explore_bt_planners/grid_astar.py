@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from explore_bt.interfaces import API_VERSION, PluginOptions
 from explore_bt_planners.field_planner import FieldPlanner, FieldPlannerOptions
-from explore_bt_planners.search import ClearancePrice, find_route
+from explore_bt_planners.search import ClearancePrice, find_costs, find_route
 from explore_bt_planners.terrain import Terrain
 
 __all__ = ["GridAstar", "GridAstarOptions"]
@@ -40,6 +40,8 @@ class GridAstar(FieldPlanner):
         goal: tuple[int, int],
         cancelled: Callable[[], bool],
     ) -> NDArray[np.int64] | None:
+        if not terrain.joins(start, goal):
+            return None
         return find_route(
             terrain.passable,
             terrain.passable,
@@ -47,5 +49,22 @@ class GridAstar(FieldPlanner):
             self._price(terrain),
             start,
             goal,
+            cancelled,
+        )
+
+    def _lengths(
+        self,
+        terrain: Terrain,
+        start: tuple[int, int],
+        goals: NDArray[np.int64],
+        cancelled: Callable[[], bool],
+    ) -> NDArray[np.float64]:
+        return find_costs(
+            terrain.passable,
+            terrain.passable,
+            terrain.clearance_m,
+            self._price(terrain),
+            start,
+            goals,
             cancelled,
         )

@@ -6,9 +6,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from explore_bt.types import GridWindow
 from explore_bt_planners.feature_transform import FeatureTransform
 
-__all__ = ["medial_axis"]
+__all__ = ["mark_axis", "medial_axis"]
 
 
 def medial_axis(
@@ -29,28 +30,51 @@ def medial_axis(
     Returns:
         (rows, cols) bool.
     """
-    axis = np.zeros(transform.squared.shape, dtype=np.bool_)
-    _mark(
-        transform.squared, transform.row, transform.col, min_squared, float(min_separation_cells) ** 2, axis
-    )
+    rows, cols = transform.squared.shape
+    axis = np.zeros((rows, cols), dtype=np.bool_)
+    mark_axis(axis, transform, min_squared, min_separation_cells, GridWindow(0, 0, rows, cols))
     return axis
 
 
+def mark_axis(
+    axis: NDArray[np.bool_],
+    transform: FeatureTransform,
+    min_squared: int,
+    min_separation_cells: float,
+    window: GridWindow,
+) -> None:
+    """Write the medial axis of the cells in a window; arguments as for ``medial_axis``."""
+    box = (window.row0, window.col0, window.row1, window.col1)
+    separation_squared = float(min_separation_cells) ** 2
+    _mark(transform.squared, transform.row, transform.col, min_squared, separation_squared, box, axis)
+
+
 @njit(cache=True)
-def _mark(squared, row, col, min_squared, min_separation_squared, axis):  # type: ignore[no-untyped-def]  # numba kernel
+def _mark(squared, row, col, min_squared, min_separation_squared, box, axis):  # type: ignore[no-untyped-def]  # numba kernel
     rows, cols = squared.shape
-    for r in range(rows):
-        for c in range(cols):
-            own = squared[r, c]
-            if own < min_squared:
+    row0, col0, row1, col1 = box
+    axis[row0:row1, col0:col1] = False
+    for r in range(max(row0 - 1, 0), row1):
+        above = min(r + 1, rows - 1)
+        own, up = squared[r], squared[above]
+        own_row, own_col, up_row, up_col = row[r], col[r], row[above], col[above]
+        for c in range(max(col0 - 1, 0), col1):  # every cell with the one to its right and the one above
+            right = min(c + 1, cols - 1)
+            if own[c] < min_squared and own[right] < min_squared and up[c] < min_squared:
                 continue
-            for k in range(4):
-                nr = r + (k == 0) - (k == 1)
-                nc = c + (k == 2) - (k == 3)
-                if nr < 0 or nr >= rows or nc < 0 or nc >= cols or squared[nr, nc] > own:
-                    continue
-                dr = row[nr, nc] - row[r, c]
-                dc = col[nr, nc] - col[r, c]
-                if dr * dr + dc * dc >= min_separation_squared:
-                    axis[r, c] = True
-                    break
+            dr, dc = own_row[right] - own_row[c], own_col[right] - own_col[c]
+            if dr * dr + dc * dc >= min_separation_squared:
+                _mark_clearer(squared, min_squared, box, r, c, r, right, axis)
+            dr, dc = up_row[c] - own_row[c], up_col[c] - own_col[c]
+            if dr * dr + dc * dc >= min_separation_squared:
+                _mark_clearer(squared, min_squared, box, r, c, above, c, axis)
+
+
+@njit(cache=True)
+def _mark_clearer(squared, min_squared, box, r0, c0, r1, c1, axis):  # type: ignore[no-untyped-def]  # numba kernel
+    """Of two neighbours the clearer one, or both if neither is."""
+    one, other = squared[r0, c0], squared[r1, c1]
+    if one >= other and one >= min_squared and box[0] <= r0 and box[1] <= c0:
+        axis[r0, c0] = True
+    if other >= one and other >= min_squared and box[0] <= r1 < box[2] and box[1] <= c1 < box[3]:
+        axis[r1, c1] = True

@@ -9,12 +9,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from explore_bt_planners.polyline import resample, subdivide
+from explore_bt_planners.polyline import length_of, resample, subdivide
 from explore_bt_planners.sampling import STEP_CELLS, clearance_at
 
-__all__ = ["ClearanceFloor", "smooth"]
+__all__ = ["ClearanceFloor", "smooth", "turn_points"]
 
 _PASSES = 12
+_SPLITS = 4
+_SHARPEST_COSINE = math.cos(math.radians(40.0))  # per 0.1 m of path: 7/m, driven at a crawl
 _EASY_M = 0.3  # slack from which on the reference holds the curve as loosely as it ever does
 _LOOSEST, _TIGHTEST = 1e-3, 10.0  # weights of the reference against the squared third difference
 
@@ -39,26 +41,51 @@ def smooth(
     clearance_m: NDArray[np.float32],
     floor: ClearanceFloor,
     spacing_cells: float,
+    splits: int = _SPLITS,
 ) -> NDArray[np.float64]:
     """Points of a smooth path near the polyline, no chord of which falls below the floor.
 
     Minimises the squared third differences plus weighted squared distances to the polyline: one banded
-    solve a pass. Where a chord falls short, the reference moves uphill and its weight is raised. If the
-    curve cannot be mended in a few passes, the polyline itself is returned, cut into short pieces.
+    solve a pass; the samples of a curve with continuous curvature. Where a chord falls short, the reference
+    moves uphill and its weight is raised. What cannot be mended in a few passes, or bends so hard that the
+    robot would all but stop, is cut there in two, at a corner of the polyline: the robot turns in place.
+    In the end the polyline itself is good enough, cut into short pieces.
 
     Args:
         polyline: (N, 2) float64 column, row as real numbers of cells; itself above the floor.
         clearance_m: (rows, cols) float32.
         floor: what to keep.
         spacing_cells: distance between the points of the result, about.
+        splits: how often what remains may still be cut in two.
 
     Returns:
         (M, 2) float64; ends unchanged.
     """
     reference = resample(polyline, spacing_cells)
     args = (floor.threshold_m, floor.start_m, floor.leave_cells)
-    points, good = _relax(reference, clearance_m, *args)
-    return points if good else subdivide(polyline, spacing_cells)
+    points, worst = _relax(reference, clearance_m, *args)
+    if worst < 0:
+        return points
+    if splits == 0 or len(polyline) < 3:
+        return subdivide(polyline, spacing_cells)
+    corner = 1 + int(np.hypot(*(polyline[1:-1] - reference[worst]).T).argmin())
+    before = smooth(polyline[: corner + 1], clearance_m, floor, spacing_cells, splits - 1)
+    leave_cells = max(floor.leave_cells - length_of(polyline[: corner + 1]), 0.0)
+    rest = ClearanceFloor(floor.threshold_m, floor.start_m if leave_cells else floor.threshold_m, leave_cells)
+    after = smooth(polyline[corner:], clearance_m, rest, spacing_cells, splits - 1)
+    return np.concatenate((before, after[1:]))
+
+
+def turn_points(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Indices of the points of a smoothed path at which the robot turns in place.
+
+    Args:
+        points: (N, 2) float64, N >= 2.
+    """
+    steps = np.diff(points, axis=0)
+    steps /= np.maximum(np.hypot(*steps.T), 1e-12)[:, None]
+    cosines = np.einsum("ij,ij->i", steps[:-1], steps[1:])
+    return np.asarray(1 + np.flatnonzero(cosines < _SHARPEST_COSINE), dtype=np.int64)
 
 
 @njit(cache=True)
@@ -74,9 +101,22 @@ def _relax(reference, clearance, threshold, start_floor, leave):  # type: ignore
     for _ in range(_PASSES):
         points = _solve(anchor, weight)
         if not _find_short(points, clearance, threshold, start_floor, leave, short):
-            return points, True
+            return points, _sharpest_bend(points)
         _hold_back(anchor, weight, short, clearance)
-    return points, False
+    return points, np.flatnonzero(short)[0]
+
+
+@njit(cache=True)
+def _sharpest_bend(points):  # type: ignore[no-untyped-def]  # numba kernel
+    """Index of the sharpest bend that is sharper than a robot drives, -1 if there is none."""
+    worst, least = -1, _SHARPEST_COSINE
+    for i in range(1, len(points) - 1):
+        du, dv = points[i] - points[i - 1]
+        eu, ev = points[i + 1] - points[i]
+        cosine = (du * eu + dv * ev) / max(math.hypot(du, dv) * math.hypot(eu, ev), 1e-12)
+        if cosine < least:
+            worst, least = i, cosine
+    return worst
 
 
 @njit(cache=True)

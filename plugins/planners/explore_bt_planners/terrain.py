@@ -4,27 +4,30 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from threading import Lock
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from explore_bt.types import OccupancyGrid
-from explore_bt_planners.feature_transform import FeatureTransform, feature_transform
-from explore_bt_planners.medial_axis import medial_axis
+from explore_bt.types import GridWindow, OccupancyGrid
+from explore_bt_planners.feature_transform import FeatureTransform
+from explore_bt_planners.medial_axis import mark_axis, medial_axis
+from explore_bt_planners.transform_update import paste
 
-__all__ = ["SLACK_M", "Terrain", "TerrainCache"]
+__all__ = ["SLACK_M", "Terrain"]
 
 SLACK_M = 1e-6
 """Rounding allowed for in comparisons of clearances, metres."""
 
 
 class Terrain:
-    """One map as a robot of one width sees it; every field is computed at most once.
+    """One map as a robot of one width sees it; every field is computed at most once, then kept up to date.
 
     Attributes:
+        grid: the map.
         threshold_m: clearance that a cell needs to be passable.
+        transform: of the map; shared with the terrains of other widths.
     """
 
     def __init__(
@@ -33,17 +36,16 @@ class Terrain:
         self.grid = grid
         self.threshold_m = threshold_m
         self.transform = transform
-        self._separation = separation
+        self._separation_cells = separation * threshold_m / grid.resolution_m
         cells = max(0.0, (threshold_m - SLACK_M) / grid.resolution_m + 0.5)
         self.min_squared = max(1, math.ceil(cells * cells))
+        self._behind: GridWindow | None = None
 
     @cached_property
     def clearance_m(self) -> NDArray[np.float32]:
         """(rows, cols) float32, metres; equal to ``explore_bt.exploration.clearance_field``."""
-        field = np.sqrt(self.transform.squared, dtype=np.float32)
-        field -= np.float32(0.5)
-        np.maximum(field, 0.0, out=field)
-        field *= np.float32(self.grid.resolution_m)
+        field = np.empty(self.transform.squared.shape, dtype=np.float32)
+        _write_clearance(self.transform.squared, self.grid.resolution_m, field)
         return field
 
     @cached_property
@@ -54,8 +56,7 @@ class Terrain:
     @cached_property
     def skeleton(self) -> NDArray[np.bool_]:
         """(rows, cols) bool: the medial axis of the passable space."""
-        separation = self._separation * self.threshold_m / self.grid.resolution_m
-        return medial_axis(self.transform, self.min_squared, separation)
+        return medial_axis(self.transform, self.min_squared, self._separation_cells)
 
     @cached_property
     def component(self) -> NDArray[np.int32]:
@@ -66,6 +67,10 @@ class Terrain:
         _, labels = cv2.connectedComponents(self.passable.view(np.uint8), connectivity=4, ltype=cv2.CV_32S)
         return np.asarray(labels, dtype=np.int32)
 
+    def joins(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
+        """Whether two passable cells lie in one piece of passable space."""
+        return bool(self.component[one] == self.component[other])
+
     def to_cells(self, x: float, y: float) -> tuple[float, float]:
         """(column, row) as real numbers: cell (row, col) is the square [col, col+1) × [row, row+1)."""
         ox, oy = self.grid.origin_xy
@@ -75,38 +80,74 @@ class Terrain:
         """(N, 2) x, y in the ``map`` frame of (N, 2) columns and rows as real numbers."""
         return points * self.grid.resolution_m + np.asarray(self.grid.origin_xy)
 
+    def fall_behind(self, window: GridWindow) -> None:
+        """The transform has changed within a window; ``catch_up`` before any field is read."""
+        one = self._behind
+        self._behind = (
+            window
+            if one is None
+            else GridWindow(
+                min(one.row0, window.row0),
+                min(one.col0, window.col0),
+                max(one.row1, window.row1),
+                max(one.col1, window.col1),
+            )
+        )
 
-class TerrainCache:
-    """The terrains planned on last, so that several plans on one map cost one transform.
+    def catch_up(self, grid: OccupancyGrid) -> None:
+        """Bring every field that was computed up to date with the transform of ``grid``, in place."""
+        self.grid = grid
+        window, self._behind = self._behind, None
+        if window is None:
+            return
+        fields = vars(self)
+        fields.pop("component", None)
+        squared = self.transform.squared[window.slices]
+        if "clearance_m" in fields:
+            _write_clearance(squared, self.grid.resolution_m, self.clearance_m[window.slices])
+        if "passable" in fields:
+            self.passable[window.slices] = squared >= self.min_squared
+        if "skeleton" in fields:
+            rows, cols = self.transform.squared.shape
+            around = GridWindow(  # a cell's mark depends on its neighbours
+                max(window.row0 - 1, 0),
+                max(window.col0 - 1, 0),
+                min(window.row1 + 1, rows),
+                min(window.col1 + 1, cols),
+            )
+            self._mark(around)
 
-    A map is known by its array of cells, which is frozen and kept alive here.
-    """
+    def grow(self, transform: FeatureTransform, offset: tuple[int, int]) -> None:
+        """Take the place in a larger map whose new cells are all obstacles; the rest is as it was.
 
-    def __init__(self, separation: float, size: int = 2) -> None:
-        self._separation = separation
-        self._size = size
-        self._entries: tuple[Terrain, ...] = ()
-        self._lock = Lock()
+        Args:
+            transform: of the larger map.
+            offset: row and column in it of this map's first cell.
+        """
+        old, shape = self.transform.squared.shape, transform.squared.shape
+        self.transform = transform
+        if self._behind is not None:
+            (row, col), one = offset, self._behind
+            self._behind = GridWindow(one.row0 + row, one.col0 + col, one.row1 + row, one.col1 + col)
+        fields = vars(self)
+        fields.pop("component", None)
+        for name in fields.keys() & {"clearance_m", "passable", "skeleton"}:
+            fields[name] = paste(np.zeros(shape, dtype=fields[name].dtype), fields[name], offset)
+        if "skeleton" in fields:  # what was the border has neighbours now
+            top, left = offset
+            bottom, right = top + old[0], left + old[1]
+            for row in (top, bottom - 1):
+                self._mark(GridWindow(row, left, row + 1, right))
+            for col in (left, right - 1):
+                self._mark(GridWindow(top, col, bottom, col + 1))
 
-    def terrain(self, grid: OccupancyGrid, threshold_m: float) -> Terrain:
-        """The terrain of this map for this threshold."""
-        with self._lock:
-            twin: Terrain | None = None
-            for entry in self._entries:
-                if not _same_map(entry.grid, grid):
-                    continue
-                if entry.threshold_m == threshold_m:
-                    return entry
-                twin = entry
-            transform = twin.transform if twin else feature_transform(np.ascontiguousarray(grid.cells))
-            fresh = Terrain(grid, threshold_m, self._separation, transform)
-            self._entries = (fresh, *self._entries[: self._size - 1])
-            return fresh
+    def _mark(self, window: GridWindow) -> None:
+        mark_axis(self.skeleton, self.transform, self.min_squared, self._separation_cells, window)
 
 
-def _same_map(one: OccupancyGrid, other: OccupancyGrid) -> bool:
-    return one is other or (
-        one.cells is other.cells
-        and one.resolution_m == other.resolution_m
-        and one.origin_xy == other.origin_xy
-    )
+@njit(cache=True)
+def _write_clearance(squared, resolution, field):  # type: ignore[no-untyped-def]  # numba kernel
+    half, cell = np.float32(0.5), np.float32(resolution)
+    for r in range(squared.shape[0]):
+        for c in range(squared.shape[1]):
+            field[r, c] = max(np.sqrt(np.float32(squared[r, c])) - half, np.float32(0.0)) * cell

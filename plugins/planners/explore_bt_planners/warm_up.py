@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from explore_bt.types import OCCUPIED, OccupancyGrid, Pose2
+from explore_bt.types import OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
 
-__all__ = ["practice_grid"]
+__all__ = ["later_states", "practice_grid"]
 
 
 def practice_grid(threshold_m: float) -> tuple[OccupancyGrid, Pose2, Pose2]:
@@ -18,3 +20,12 @@ def practice_grid(threshold_m: float) -> tuple[OccupancyGrid, Pose2, Pose2]:
     grid = OccupancyGrid(cells, resolution_m, (0.0, 0.0))
     start, goal = grid.center_of(10, 10), grid.center_of(10, 68)
     return grid, Pose2(*start, 0.0), Pose2(*goal, 0.0)
+
+
+def later_states(grid: OccupancyGrid) -> tuple[OccupancyGrid, OccupancyGrid]:
+    """The practice map with an obstacle more, and then grown by a few cells."""
+    cells = grid.cells.copy()
+    cells[-3, 3] = OCCUPIED
+    changed = replace(grid, cells=cells, revision=grid.revision + 1)
+    wider = np.pad(cells, ((0, 4), (0, 4)), constant_values=UNKNOWN)
+    return changed, replace(changed, cells=wider, revision=grid.revision + 2)
