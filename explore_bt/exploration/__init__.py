@@ -37,6 +37,7 @@ from explore_bt.exploration.coverage import CoverageMeter
 from explore_bt.exploration.free_sectors import FreeSector, find_free_sectors, order_by_safety
 from explore_bt.exploration.frontier import Frontier, find_frontiers, frontier_mask
 from explore_bt.exploration.gain import gain_many, visible_unknown_area
+from explore_bt.exploration.grid_scan import scan_of_grid
 from explore_bt.exploration.half_plane import HalfPlane, HalfPlaneHistory
 from explore_bt.exploration.passage import passage_field
 from explore_bt.exploration.retrace import way_back
@@ -71,6 +72,7 @@ __all__ = [
     "passage_field",
     "reachable_frontiers",
     "repeated_visit",
+    "scan_of_grid",
     "travel_field",
     "visible_unknown_area",
     "warm_up",

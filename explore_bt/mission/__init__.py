@@ -6,7 +6,7 @@ from explore_bt.mission.catalog import PluginCatalog
 from explore_bt.mission.draw_dot import show_dot
 from explore_bt.mission.draw_text import show_text
 from explore_bt.mission.limits import LimitsSpec
-from explore_bt.mission.load import load_mission
+from explore_bt.mission.load import load_mission, load_tree
 from explore_bt.mission.model import Mission, PluginChoice, RobotSpec
 from explore_bt.mission.nodes import CONTROL_NODES, MODIFIERS, Condition, Modifiers, NodeSpec
 from explore_bt.mission.schema import mission_schema
@@ -29,6 +29,7 @@ __all__ = [
     "RobotSpec",
     "build_tree",
     "load_mission",
+    "load_tree",
     "mission_schema",
     "show_dot",
     "show_text",

@@ -49,8 +49,14 @@ class MissionText:
     is_whole: bool = True
 
 
-def read_files(path: Path, faults: Faults) -> MissionText | None:
-    """The mission file and all it includes; None if it cannot be read as a mapping at all."""
+def read_files(path: Path, faults: Faults, known: tuple[str, ...] = MISSION_KEYS) -> MissionText | None:
+    """The mission file and all it includes; None if it cannot be read as a mapping at all.
+
+    Args:
+        path: the file.
+        faults: what is wrong with it is noted here.
+        known: the keys it may hold; ``INCLUDE_KEYS`` for a file of trees.
+    """
     head = Source(str(path), "", path.parent, has_lines=False)
     text = _read_text(path, head.place(), "the mission", faults)
     if text is None:
@@ -60,7 +66,7 @@ def read_files(path: Path, faults: Faults) -> MissionText | None:
     if root is None:
         return None
     mission = MissionText(source, root)
-    _Collector(mission, path, faults).collect(root, MISSION_KEYS, (Path(os.path.realpath(path)),))
+    _Collector(mission, path, faults).collect(root, known, (Path(os.path.realpath(path)),))
     return mission
 
 

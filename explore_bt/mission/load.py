@@ -12,21 +12,22 @@ from pathlib import Path
 from explore_bt.mission.catalog import PluginCatalog
 from explore_bt.mission.document import Entries, Entry, Scalar, Value
 from explore_bt.mission.faults import Faults
-from explore_bt.mission.files import MissionText, read_files
+from explore_bt.mission.files import INCLUDE_KEYS, MissionText, read_files
 from explore_bt.mission.limits import read_limits, read_tick
 from explore_bt.mission.model import Mission, RobotSpec
 from explore_bt.mission.nodes import NodeSpec
-from explore_bt.mission.overrides import SECTIONS, Override, overridden, params_overridden, read_overrides
-from explore_bt.mission.params import PLUGIN_KINDS, Param, param_value, read_param
+from explore_bt.mission.overrides import SECTIONS, Override, overridden, read_overrides
+from explore_bt.mission.param_section import read_params
+from explore_bt.mission.params import PLUGIN_KINDS, Param
 from explore_bt.mission.reading import expect_entries, expect_items, expect_text, is_null, written
-from explore_bt.mission.references import BROKEN, Scope, resolve
+from explore_bt.mission.references import Scope, resolve
 from explore_bt.mission.robots import read_robot, unknown_plugin
 from explore_bt.mission.source import Place
 from explore_bt.mission.tree_reader import TreeReader
 from explore_bt.mission.wiring import check_wiring
 from explore_bt.mission.words import did_you_mean
 
-__all__ = ["load_mission"]
+__all__ = ["load_mission", "load_tree"]
 
 _MISSION_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 
@@ -57,6 +58,37 @@ def load_mission(
         faults.raise_if_any()
     assert mission is not None  # read_files has noted why not, and that was raised
     return _Loader(mission, catalog, given, os.environ if environ is None else environ, faults).load(path)
+
+
+def load_tree(
+    path: Path, names: Sequence[str], catalog: PluginCatalog, settings: Mapping[str, str] | None = None
+) -> NodeSpec:
+    """Read and check one tree of a file that holds only trees and parameters, for no robot in particular.
+
+    Args:
+        path: a file as missions include it.
+        names: the tree that is wanted; the first of several that is there.
+        catalog: the installed plugins.
+        settings: parameter -> value as YAML.
+
+    Raises:
+        MissionError: with every fault of the file and the settings.
+    """
+    faults = Faults()
+    given = read_overrides(settings or {}, Path.cwd(), faults)
+    text = read_files(path, faults, INCLUDE_KEYS)
+    if text is None:
+        faults.raise_if_any()
+    assert text is not None  # as in load_mission
+    _, params = read_params(text, given, catalog, os.environ, faults)
+    reader = TreeReader(text.trees, text.is_whole, catalog, faults)
+    name = next((name for name in names if name in text.trees), names[0])
+    root = reader.root(Scalar(name, name, True, text.source.place()), Scope(params, os.environ, "robot"))
+    if root is not None and reader.complete:
+        check_wiring(root, faults)
+    faults.raise_if_any()
+    assert root is not None  # else a fault was noted
+    return root
 
 
 class _Loader:
@@ -110,16 +142,7 @@ class _Loader:
         return name or path.stem
 
     def _params(self) -> tuple[tuple[Param, ...], dict[str, object]]:
-        entries = self._text.params
-        declared: list[Param] = []
-        new = params_overridden(self._overrides, entries, self._faults)
-        params: dict[str, object] = {}
-        for name, entry in entries.items():
-            param = read_param(entry, self._faults)
-            value = param and param_value(param, new.get(name), self._catalog, self._environ, self._faults)
-            params[name] = BROKEN if param is None else value
-            declared += [param] if param else []
-        return tuple(declared), params
+        return read_params(self._text, self._overrides, self._catalog, self._environ, self._faults)
 
     def _section(self, section: str, params: Mapping[str, object]) -> Entries:
         found = expect_entries(self._root.get(section), section, "name: value", self._faults)

@@ -13,7 +13,7 @@ from explore_bt.mission.leaf_reader import LeafReader
 from explore_bt.mission.modifier_reader import ModifierReader
 from explore_bt.mission.nodes import CONTROL_NODES, MODIFIERS, NodeSpec
 from explore_bt.mission.reading import written
-from explore_bt.mission.references import Scope
+from explore_bt.mission.references import Scope, is_broken, resolve
 from explore_bt.mission.spot import Spot
 from explore_bt.mission.words import did_you_mean, listed
 
@@ -48,8 +48,12 @@ class TreeReader:
         self.complete = True
 
     def root(self, value: Value, scope: Scope) -> NodeSpec | None:
-        """A robot's tree: the name of one in ``trees``, or a node."""
+        """A robot's tree: the name of one in ``trees`` (or a parameter that holds it), or a node."""
         self._count, self.complete, self._leaves.broken = 0, True, False
+        if isinstance(value, Scalar):
+            value = resolve(value, scope, self._faults)
+            if is_broken(value):
+                return None
         if not isinstance(value, Scalar) or not isinstance(value.data, str):
             return self.read(value, Spot("", scope))
         if value.data not in self._trees:

@@ -1,5 +1,6 @@
 """A plugin that breaks down at work: the robot stops safely, the reason is told, nothing crashes."""
 
+import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -64,8 +65,7 @@ def run_with(broken: type, tmp_path: Path, use: str) -> tuple[Result, Watcher]:
     registry.add(broken, "the test")
     text = (MISSIONS / "00_room.yaml").read_text().replace("worlds/", f"{MISSIONS}/worlds/")
     text = text.replace("slam: {use: $params.slam}", "slam: {use: ground_truth}").replace(use, broken.name)
-    (tmp_path / "trees").mkdir()
-    (tmp_path / "trees/complete.yaml").write_text((MISSIONS / "trees/complete.yaml").read_text())
+    shutil.copytree(MISSIONS / "trees", tmp_path / "trees")
     (tmp_path / "mission.yaml").write_text(text)
     mission = load_mission(tmp_path / "mission.yaml", registry, ["limits.time=40 s"])
     watcher = Watcher()
@@ -142,7 +142,7 @@ def test_a_leaf_that_raises_ends_the_mission_at_rest_with_its_reason(tmp_path: P
     registry = load_plugins().registry
     registry.add(broken, "the test")
     trees = (MISSIONS / "trees/complete.yaml").read_text().replace("record_waypoint", "broken")
-    (tmp_path / "trees").mkdir()
+    shutil.copytree(MISSIONS / "trees", tmp_path / "trees")
     (tmp_path / "trees/complete.yaml").write_text(trees)
     text = (MISSIONS / "00_room.yaml").read_text().replace("worlds/", f"{MISSIONS}/worlds/")
     (tmp_path / "mission.yaml").write_text(text)
@@ -166,8 +166,7 @@ def test_a_driver_that_never_scans_is_named(tmp_path: Path) -> None:
 def test_a_lidar_of_which_every_beam_is_invalid_is_named(run: RunMission, tmp_path: Path) -> None:
     text = (MISSIONS / "00_room.yaml").read_text()
     text = text.replace("worlds/room.yaml", f"{MISSIONS}/worlds/room.yaml, dropout: 1.0")
-    (tmp_path / "trees").mkdir()
-    (tmp_path / "trees/complete.yaml").write_text((MISSIONS / "trees/complete.yaml").read_text())
+    shutil.copytree(MISSIONS / "trees", tmp_path / "trees")
     (tmp_path / "mission.yaml").write_text(text)
     result = run(tmp_path / "mission.yaml", "slam=ground_truth")
     assert (result.outcome, result.reason) == (

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 from itertools import pairwise
 from pathlib import Path
 
@@ -111,8 +112,7 @@ def test_the_same_tree_explores_a_real_building(run: RunMission, name: str) -> N
 def test_the_paper_s_own_tree_ends_by_naming_its_live_lock(run: RunMission, tmp_path: Path) -> None:
     mission = (MISSIONS / "00_room.yaml").read_text()
     text = mission.replace("complete", "paper").replace("worlds/", f"{MISSIONS}/worlds/")
-    (tmp_path / "trees").mkdir()
-    (tmp_path / "trees/paper.yaml").write_text((MISSIONS / "trees/paper.yaml").read_text())
+    shutil.copytree(MISSIONS / "trees", tmp_path / "trees")
     (tmp_path / "mission.yaml").write_text(text)
     result = run(tmp_path / "mission.yaml", "slam=ground_truth")
     assert result.outcome is Outcome.FAILED

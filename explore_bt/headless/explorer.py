@@ -1,0 +1,81 @@
+"""The public entry for foreign loops: a map and a pose in, the next goal and path out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import overload
+
+from explore_bt.exploration import warm_up
+from explore_bt.exploration.arguments import require_positive
+from explore_bt.headless.decision import Decision
+from explore_bt.headless.explorer_robot import ExplorerRobot
+from explore_bt.headless.grid_robot import GridRobot
+from explore_bt.headless.strategies import make_planner, read_strategy
+from explore_bt.interfaces import RobotContext
+from explore_bt.plugin import load_plugins
+from explore_bt.types import OccupancyGrid, Pose2
+
+__all__ = ["Explorer"]
+
+_ALONE = "robot"
+
+
+class Explorer:
+    """Runs a strategy's behaviour tree over maps and poses that somebody else provides.
+
+    No driver, no SLAM, no files: the very trees that missions run decide, over the skeleton planner. It keeps
+    what the tree keeps (the goal committed to, waypoints, half-planes), so one explorer serves one
+    exploration. Call ``decide`` whenever the map has changed: each scan, or each half metre.
+    """
+
+    def __init__(
+        self,
+        strategy: str | Path = "complete",
+        robot_radius_m: float = 0.2,
+        lidar_range_m: float = 5.0,
+    ) -> None:
+        """Read the tree and compile every kernel (seconds the first time, then from a cache).
+
+        Args:
+            strategy: a name of ``explore_bt.headless.STRATEGIES``, or a file of trees.
+            robot_radius_m: the circular footprint.
+            lidar_range_m: how far the lidar sees, all round.
+
+        Raises:
+            UserError: no such strategy, faults in its file, or a length not above zero.
+        """
+        require_positive(robot_radius_m=robot_radius_m, lidar_range_m=lidar_range_m)
+        self._radius_m, self._range_m = robot_radius_m, lidar_range_m
+        registry = load_plugins().registry
+        self._tree = read_strategy(strategy, registry)
+        self._planner = make_planner(registry)
+        self._planner.setup(RobotContext(footprint_radius_m=robot_radius_m))
+        warm_up()
+        self._robots: dict[str, ExplorerRobot] = {}
+
+    @overload
+    def decide(self, grid: OccupancyGrid, pose: Pose2) -> Decision: ...
+    @overload
+    def decide(self, grid: OccupancyGrid, pose: Mapping[str, Pose2]) -> dict[str, Decision]: ...
+    def decide(
+        self, grid: OccupancyGrid, pose: Pose2 | Mapping[str, Pose2]
+    ) -> Decision | dict[str, Decision]:
+        """What to do next.
+
+        Args:
+            grid: the newest map, of any resolution; it may have grown since.
+            pose: where the robot is, ``map`` frame; or a pose for each of several robots by name.
+
+        Returns:
+            The decision, or one for each robot.
+        """
+        if isinstance(pose, Pose2):
+            return self._robot(_ALONE).decide(grid, pose)
+        return {name: self._robot(name).decide(grid, each) for name, each in pose.items()}
+
+    def _robot(self, name: str) -> ExplorerRobot:
+        if name not in self._robots:
+            body = GridRobot(name, self._planner, self._radius_m, self._range_m)
+            self._robots[name] = ExplorerRobot(body, self._tree)
+        return self._robots[name]

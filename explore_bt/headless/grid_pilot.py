@@ -1,0 +1,79 @@
+"""The wheels of a robot that somebody else drives: it only watches how far along a path it has come."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from explore_bt.interfaces import ControlOutput, ControlStatus
+from explore_bt.types import Path, Pose2, Twist2, wrap_angle
+
+__all__ = ["GridPilot"]
+
+_ARRIVED_M = 0.15
+_ARRIVED_RAD = math.radians(10.0)
+_STILL_M = 0.02
+_STILL_RAD = math.radians(2.0)
+_PATIENCE = 100
+
+
+class GridPilot:
+    """Implements ``Pilot`` by the poses that the caller reports.
+
+    A path has arrived within 0.15 m of its end (a turn in place, within 10°); it is stuck when a hundred
+    reports in a row have brought no motion.
+    """
+
+    blocked_s = 0.0
+    gate_reason = ""
+    is_blocked_by_obstacle = False
+
+    def __init__(self) -> None:
+        self.path: Path | None = None
+        self._pose: Pose2 | None = None
+        self._still = 0
+
+    def follow(self, path: Path) -> None:
+        """Offer a path to the caller."""
+        self.path = path
+        self._still = 0
+
+    def hold(self) -> None:
+        """Offer nothing."""
+        self.path = None
+
+    def report(self, pose: Pose2) -> None:
+        """Where the robot is now."""
+        before, self._pose = self._pose, pose
+        moved = before is None or (
+            pose.distance_to(before) > _STILL_M or abs(wrap_angle(pose.yaw_rad - before.yaw_rad)) > _STILL_RAD
+        )
+        self._still = 0 if moved else self._still + 1
+
+    @property
+    def path_ahead(self) -> Path | None:
+        """What is left of the path from the place nearest to the robot on; None while holding."""
+        if self.path is None or self._pose is None:
+            return self.path
+        offsets = self.path.poses[:, :2] - np.array(self._pose.xy)
+        nearest = int(np.argmin(np.einsum("ij,ij->i", offsets, offsets)))
+        nearest = max(0, min(nearest, len(offsets) - 2))  # one pose alone would be a turn in place
+        return Path(self.path.poses[nearest:], self.path.clearance_m[nearest:])
+
+    @property
+    def output(self) -> ControlOutput:
+        """How the present path is going."""
+        if self.path is None or self._pose is None:
+            return ControlOutput(Twist2(), ControlStatus.IDLE)
+        if self._has_arrived(self.path, self._pose):
+            return ControlOutput(Twist2(), ControlStatus.ARRIVED)
+        if self._still >= _PATIENCE:
+            return ControlOutput(Twist2(), ControlStatus.STUCK, f"no motion in {_PATIENCE} reports")
+        return ControlOutput(Twist2(), ControlStatus.RUNNING)
+
+    @staticmethod
+    def _has_arrived(path: Path, pose: Pose2) -> bool:
+        if len(path.poses) == 1:
+            return abs(wrap_angle(pose.yaw_rad - path.goal.yaw_rad)) <= _ARRIVED_RAD
+        return pose.distance_to(path.goal) <= _ARRIVED_M

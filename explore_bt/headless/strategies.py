@@ -1,0 +1,49 @@
+"""The strategies that ship, and where they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import explore_bt
+from explore_bt.errors import UserError
+from explore_bt.interfaces import Planner
+from explore_bt.mission import NodeSpec, load_tree
+from explore_bt.plugin import Registry
+
+__all__ = ["STRATEGIES", "make_planner", "read_strategy"]
+
+STRATEGIES = ("complete", "paper", "nearest_frontier", "information_gain", "tour")
+"""Names of the trees below ``missions/trees``."""
+
+
+def read_strategy(strategy: str | Path, registry: Registry) -> NodeSpec:
+    """The tree of a strategy, without the way home: ``explore_NAME`` if there is one, else ``NAME``.
+
+    Args:
+        strategy: a name of ``STRATEGIES``, or a file of trees with one called like the file.
+        registry: the installed plugins.
+
+    Raises:
+        UserError: there is no such strategy; the message lists those that ship.
+        MissionError: the file's faults, all of them.
+    """
+    path = Path(strategy)
+    if path.suffix not in (".yaml", ".yml"):
+        path = _folder() / f"{strategy}.yaml"
+    if not path.is_file():
+        raise UserError(
+            f"strategy: there is no {strategy}; expected one of {', '.join(STRATEGIES)}, or a file of trees"
+        )
+    return load_tree(path, (f"explore_{path.stem}", path.stem), registry)
+
+
+def make_planner(registry: Registry) -> Planner:
+    """The skeleton planner with its defaults; not set up yet."""
+    planner: type[Planner] = registry.get("planner", "skeleton")
+    return planner(planner.Options())
+
+
+def _folder() -> Path:
+    package = Path(explore_bt.__file__).parent
+    missions = package / "missions" if (package / "missions").is_dir() else package.parent / "missions"
+    return missions / "trees"
