@@ -3,7 +3,9 @@
 from explore_bt.behaviours.back_out import BackOut
 from explore_bt.behaviours.choose_home import ChooseHome
 from explore_bt.behaviours.drive_to import DriveTo
+from explore_bt.behaviours.find_frontier import FindFrontier
 from explore_bt.behaviours.find_next_heading import FindNextHeading
+from explore_bt.behaviours.find_view import FindView
 from explore_bt.behaviours.find_viewpoint import FindViewpoint
 from explore_bt.behaviours.give_up_goal import GivenUp, GiveUpGoal
 from explore_bt.behaviours.record_waypoint import RecordWaypoint
@@ -20,7 +22,9 @@ __all__ = [
     "BackOut",
     "ChooseHome",
     "DriveTo",
+    "FindFrontier",
     "FindNextHeading",
+    "FindView",
     "FindViewpoint",
     "GiveUpGoal",
     "GivenUp",
@@ -38,7 +42,9 @@ LEAVES = (
     BackOut,
     ChooseHome,
     DriveTo,
+    FindFrontier,
     FindNextHeading,
+    FindView,
     FindViewpoint,
     GiveUpGoal,
     RecordWaypoint,

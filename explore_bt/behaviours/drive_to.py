@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from explore_bt.errors import ComponentFailure, PlanningFailure
@@ -9,7 +11,7 @@ from explore_bt.exploration import clearance_at, visible_unknown_area
 from explore_bt.interfaces import ControlStatus
 from explore_bt.tree import Input, Key, Leaf, Output, Status
 from explore_bt.types import Path, Pose2, Waypoint, way_along
-from explore_bt.units import Area, Duration
+from explore_bt.units import Area, Duration, Length
 
 __all__ = ["DriveTo"]
 
@@ -21,7 +23,8 @@ _TIGHT_POSES_AHEAD = 2  # about 0.2 m: the gate's brake ends before the place it
 class DriveTo(Leaf):
     """Plans a path to the goal and follows it; plans anew when the path is cut or the robot is held.
 
-    SUCCESS at the goal, or as soon as nothing new is to be seen from it (``until_seen``).
+    SUCCESS at the goal, or as soon as nothing new is to be seen from it (``until_seen``), or after some way
+    (``look_again``).
     FAILURE when no path is left; the planner's typed reason goes to ``failure``.
     """
 
@@ -33,6 +36,14 @@ class DriveTo(Leaf):
         default=0.0,
         ge=0.0,
         doc="stop early once less new area than this is expected at the goal; 0 always drives to the end",
+    )
+    depth: Input[float | None] = Input(
+        Length | None,
+        default=None,
+        doc="how far into the unknown an opening is believed when asking what is to be seen",
+    )
+    look_again: Input[float | None] = Input(
+        Length | None, default=None, doc="stop early after so much way, to decide anew"
     )
     patience: Input[float] = Input(
         Duration, default=2.0, ge=0.0, doc="how long the safety gate may hold the robot before a new plan"
@@ -48,6 +59,7 @@ class DriveTo(Leaf):
         self._path: Path | None = None
         self._held = 0
         self._checked_revision = -1
+        self._begun_m = self.robot.distance_m
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
 
     def update(self) -> Status:
@@ -55,8 +67,7 @@ class DriveTo(Leaf):
         if self._path is None:
             return self._plan()
         if self._is_seen():
-            self.reached = Waypoint(self.robot.estimate().T_map_base, "seen from here")
-            return Status.SUCCESS
+            return self._stop_here("seen from here")
         output = self.robot.pilot.output
         if output.status is ControlStatus.ARRIVED:
             self.reached = self.goal
@@ -66,7 +77,13 @@ class DriveTo(Leaf):
             return self._plan_after_hold(output.reason)
         if self._is_cut():
             return self._plan()
+        if self.look_again is not None and self.robot.distance_m - self._begun_m >= self.look_again:
+            return self._stop_here("on the way")
         return Status.RUNNING
+
+    def _stop_here(self, reason: str) -> Status:
+        self.reached = Waypoint(self.robot.estimate().T_map_base, reason)
+        return Status.SUCCESS
 
     def terminate(self, new_status: Status) -> None:
         """Whoever cuts the drive off, or finds no way on, leaves a robot that comes to rest."""
@@ -122,7 +139,12 @@ class DriveTo(Leaf):
         if self.until_seen <= 0.0 or self.robot.now_s() < self._next_look_s:
             return False
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
-        area = visible_unknown_area(self.robot.view().grid, self.goal.position, self.robot.lidar_range_m)
+        area = visible_unknown_area(
+            self.robot.view().grid,
+            self.goal.position,
+            self.robot.lidar_range_m,
+            depth_m=math.inf if self.depth is None else self.depth,
+        )
         if area >= self.until_seen:
             return False
         self.say(f"seen from afar: only {area:.2f} m² would be new at the goal")

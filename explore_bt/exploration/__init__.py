@@ -39,10 +39,15 @@ from explore_bt.exploration.frontier import Frontier, find_frontiers, frontier_m
 from explore_bt.exploration.gain import gain_many, visible_unknown_area
 from explore_bt.exploration.grid_scan import scan_of_grid
 from explore_bt.exploration.half_plane import HalfPlane, HalfPlaneHistory
+from explore_bt.exploration.outlook import Outlooks
 from explore_bt.exploration.passage import passage_field
+from explore_bt.exploration.remains import sentences, what_remains
 from explore_bt.exploration.retrace import way_back
 from explore_bt.exploration.revisit import is_allowed, repeated_visit
+from explore_bt.exploration.tour import open_tour
 from explore_bt.exploration.travel import nearest_reaching_cell, travel_field
+from explore_bt.exploration.view_places import ViewPlaces
+from explore_bt.exploration.view_tour import TourTaste, View, choose_views, order_views
 from explore_bt.exploration.viewpoint import LeftOpen, Viewpoint, ViewpointChoice, reachable_frontiers
 from explore_bt.exploration.waypoint import next_waypoint
 
@@ -54,11 +59,16 @@ __all__ = [
     "HalfPlane",
     "HalfPlaneHistory",
     "LeftOpen",
+    "Outlooks",
+    "TourTaste",
+    "View",
+    "ViewPlaces",
     "Viewpoint",
     "ViewpointChoice",
     "align_se2",
     "ate_rmse_m",
     "choose_viewpoints",
+    "choose_views",
     "clearance_at",
     "clearance_field",
     "find_free_sectors",
@@ -68,13 +78,17 @@ __all__ = [
     "is_allowed",
     "nearest_reaching_cell",
     "next_waypoint",
+    "open_tour",
     "order_by_safety",
+    "order_views",
     "passage_field",
     "reachable_frontiers",
     "repeated_visit",
     "scan_of_grid",
+    "sentences",
     "travel_field",
     "visible_unknown_area",
     "warm_up",
     "way_back",
+    "what_remains",
 ]

@@ -17,7 +17,7 @@ _DIAGONAL = math.sqrt(2.0)
 
 
 @njit(cache=True)
-def _spread(passable, width, distance, factor, seeds, bucket_count):  # type: ignore[no-untyped-def]  # numba kernel
+def _spread(passable, width, distance, factor, seeds, bucket_count, most):  # type: ignore[no-untyped-def]  # numba kernel
     """Shortest distances in cells over a padded, flattened mask; ``distance`` holds those of the seeds.
 
     Buckets are one cell wide: no step is shorter, so every cell in the lowest bucket is settled, in
@@ -29,7 +29,7 @@ def _spread(passable, width, distance, factor, seeds, bucket_count):  # type: ig
     buckets = np.empty((bucket_count, passable.size + seeds.size), dtype=np.int32)
     filled = np.zeros(bucket_count, dtype=np.int64)
     due, level = 0, 0  # seeds come nearest first
-    while due < seeds.size or filled.any():
+    while level <= most and (due < seeds.size or filled.any()):
         bucket = level % bucket_count
         while due < seeds.size and int(distance[seeds[due]]) <= level:
             buckets[bucket, filled[bucket]] = seeds[due]
@@ -81,6 +81,7 @@ def travel_field(
     clearance_weight: float = 0.0,
     comfort_m: float = 0.6,
     escape_m: float = 0.6,
+    most_m: float = math.inf,
 ) -> NDArray[np.float32]:
     """Length of the shortest way from the robot to every cell where its footprint fits.
 
@@ -97,6 +98,7 @@ def travel_field(
             ``comfort_m``, and the field is a cost in metres of roomy floor.
         comfort_m: clearance from which on a metre costs a metre.
         escape_m: how far the robot may drive to leave a tight start.
+        most_m: where the way is longer, the field may be too high, or inf.
 
     Returns:
         (rows, cols) float32, metres; 0 at the start, inf where the robot cannot stand or come.
@@ -121,6 +123,7 @@ def travel_field(
         _factors(clearance_m, clearance_weight, comfort_m),
         (seeds + 1) @ np.array([cols + 2, 1]),
         math.ceil(_DIAGONAL * (1.0 + clearance_weight)) + 2,
+        most_m / resolution_m,
     )
     field = np.multiply(distance[1:-1, 1:-1], resolution_m, dtype=np.float32, casting="same_kind")
     field[starts[:, 0], starts[:, 1]] = 0.0

@@ -1,0 +1,87 @@
+"""A map pooled into coarse blocks that stay where they are when the map grows or is drawn finer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from explore_bt.exploration.kernel_input import read_only
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+
+__all__ = ["Blocks", "pooled_map"]
+
+
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """Squares of ``side`` cells on a lattice through the map frame's origin.
+
+    Attributes:
+        side: cells along an edge, at least 1.
+        shift: (rows, columns) of the first block that lie before the map's first cell.
+        shape: rows and columns of blocks.
+        first: the first block's place on the lattice.
+    """
+
+    side: int
+    shift: tuple[int, int]
+    shape: tuple[int, int]
+    first: tuple[int, int]
+
+    @staticmethod
+    def over(grid: OccupancyGrid, side_m: float) -> Blocks:
+        """Blocks of about ``side_m``, a whole number of cells."""
+        side = max(1, round(side_m / grid.resolution_m))
+        col, row = (round(corner / grid.resolution_m) for corner in grid.origin_xy)
+        shift = (row % side, col % side)
+        rows, cols = (-(-(size + before) // side) for size, before in zip(grid.shape, shift, strict=True))
+        return Blocks(side, shift, (rows, cols), (row // side, col // side))
+
+    def of(self, cells: NDArray[np.integer]) -> NDArray[np.int64]:
+        """(N, 2) rows and columns of the blocks that hold (N, 2) cells."""
+        return (cells + np.asarray(self.shift)) // self.side
+
+    def best_cells(self, score: NDArray[np.float32]) -> NDArray[np.int64]:
+        """(rows, columns, 2) int64: in each block the cell with the highest score above zero, else -1."""
+        return _best(read_only(score), self.side, self.shift[0], self.shift[1], self.shape[0], self.shape[1])
+
+
+@njit(cache=True)
+def _best(score, side, row0, col0, rows, cols):  # type: ignore[no-untyped-def]  # numba kernel
+    best = np.full((rows, cols, 2), -1, dtype=np.int64)
+    height = np.zeros((rows, cols), dtype=np.float32)
+    for row in range(score.shape[0]):
+        for col in range(score.shape[1]):
+            r, c = (row + row0) // side, (col + col0) // side
+            if score[row, col] > height[r, c]:
+                height[r, c] = score[row, col]
+                best[r, c, 0], best[r, c, 1] = row, col
+    return best
+
+
+@njit(cache=True)
+def _pool(cells, side, row0, col0, rows, cols):  # type: ignore[no-untyped-def]  # numba kernel
+    """A block is occupied if any cell is; else free if more than half of its cells are known."""
+    known = np.zeros((rows, cols), dtype=np.int32)
+    pooled = np.full((rows, cols), UNKNOWN, dtype=np.int8)
+    for row in range(cells.shape[0]):
+        for col in range(cells.shape[1]):
+            value = cells[row, col]
+            r, c = (row + row0) // side, (col + col0) // side
+            if value == OCCUPIED:
+                pooled[r, c] = OCCUPIED
+            elif value == FREE:
+                known[r, c] += 1
+                if 2 * known[r, c] > side * side and pooled[r, c] == UNKNOWN:
+                    pooled[r, c] = FREE
+    return pooled
+
+
+def pooled_map(grid: OccupancyGrid, blocks: Blocks) -> NDArray[np.int8]:
+    """(rows, columns) int8 of blocks: ``OCCUPIED``, ``FREE`` or ``UNKNOWN``."""
+    if blocks.side == 1:
+        return read_only(grid.cells)
+    row0, col0 = blocks.shift
+    return _pool(read_only(grid.cells), blocks.side, row0, col0, blocks.shape[0], blocks.shape[1])

@@ -1,0 +1,189 @@
+"""What can be seen from every place worth standing at, kept up to date as the map changes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from explore_bt.exploration.kernel_input import read_only
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN
+
+__all__ = ["Outlook", "Outlooks"]
+
+_TURN = 2.0 * math.pi
+_NOTHING = np.empty(0, dtype=np.int32)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outlook:
+    """N places and the unknown cells in view of each, one place's after the other's.
+
+    Attributes:
+        begin: (N + 1,) int64, where the cells of a place begin in ``cells``.
+        cells: (M,) int32, flat indices into the map that was looked at.
+    """
+
+    begin: NDArray[np.int64]
+    cells: NDArray[np.int32]
+
+
+@njit(cache=True)
+def _look(cells, eyes, reach, depth):  # type: ignore[no-untyped-def]  # numba kernel
+    """Unknown cells in view of each of (N, 2) cells, as far as ``depth`` cells into the unknown.
+
+    One ray to each cell's width on the circle of reach, after Amanatides & Woo, 1987.
+    """
+    rows, cols = cells.shape
+    rays = int(_TURN * reach)
+    seen = np.full(rows * cols, -1, dtype=np.int32)
+    begin = np.zeros(eyes.shape[0] + 1, dtype=np.int64)
+    out = np.empty(4096, dtype=np.int32)
+    count = 0
+    for i in range(eyes.shape[0]):
+        for k in range(rays):
+            angle = _TURN * k / rays
+            du, dv = math.cos(angle), math.sin(angle)
+            row, col = eyes[i, 0], eyes[i, 1]
+            step_row, step_col = (1 if dv > 0.0 else -1), (1 if du > 0.0 else -1)
+            per_row = abs(1.0 / dv) if dv != 0.0 else math.inf
+            per_col = abs(1.0 / du) if du != 0.0 else math.inf
+            next_row, next_col = 0.5 * per_row, 0.5 * per_col
+            entry, passed = 0.0, 0.0
+            while entry <= reach:
+                if not (0 <= row < rows and 0 <= col < cols):
+                    break
+                value = cells[row, col]
+                if value == OCCUPIED:
+                    break
+                leave = min(next_row, next_col)
+                if value == UNKNOWN:
+                    if passed >= depth:
+                        break
+                    passed += leave - entry
+                    flat = row * cols + col
+                    if seen[flat] != i:
+                        seen[flat] = i
+                        if count == out.size:
+                            more = np.empty(2 * out.size, dtype=np.int32)
+                            more[:count] = out
+                            out = more
+                        out[count] = flat
+                        count += 1
+                entry = leave
+                if next_col <= next_row:
+                    col += step_col
+                    next_col += per_col
+                else:
+                    row += step_row
+                    next_row += per_row
+        begin[i + 1] = count
+    return begin, out[:count].copy()
+
+
+@njit(cache=True)
+def _near_frontier(cells, reach):  # type: ignore[no-untyped-def]  # numba kernel
+    """Blocks of 8 × 8 cells that have a free cell beside an unknown one within reach, as a mask."""
+    rows, cols = cells.shape
+    high, wide = rows // 8 + 1, cols // 8 + 1
+    at = np.zeros((high, wide), dtype=np.bool_)
+    for row in range(rows):
+        for col in range(cols):
+            if cells[row, col] != FREE:
+                continue
+            if (
+                (row > 0 and cells[row - 1, col] == UNKNOWN)
+                or (row + 1 < rows and cells[row + 1, col] == UNKNOWN)
+                or (col > 0 and cells[row, col - 1] == UNKNOWN)
+                or (col + 1 < cols and cells[row, col + 1] == UNKNOWN)
+            ):
+                at[row // 8, col // 8] = True
+    near = np.zeros((high, wide), dtype=np.bool_)
+    span = int(reach) // 8 + 1
+    for row in range(high):
+        for col in range(wide):
+            if at[row, col]:
+                near[max(0, row - span) : row + span + 1, max(0, col - span) : col + span + 1] = True
+    return near
+
+
+@njit(cache=True)
+def _touched(begin, cells, changed):  # type: ignore[no-untyped-def]  # numba kernel
+    """Which places have a changed cell among those they see."""
+    touched = np.zeros(begin.size - 1, dtype=np.bool_)
+    for i in range(begin.size - 1):
+        for k in range(begin[i], begin[i + 1]):
+            if changed[cells[k]]:
+                touched[i] = True
+                break
+    return touched
+
+
+def _joined(parts: list[NDArray[np.int32]]) -> Outlook:
+    begin = np.zeros(len(parts) + 1, dtype=np.int64)
+    np.cumsum([part.size for part in parts], out=begin[1:])
+    return Outlook(begin, np.concatenate((_NOTHING, *parts)))
+
+
+class Outlooks:
+    """Remembers what each place sees; looks again only where that has changed.
+
+    What a place sees changes only if an unknown cell in its view becomes known (all rays end there), or if
+    floor or a wall within reach becomes something else.
+    """
+
+    def __init__(self) -> None:
+        self._cells: NDArray[np.int8] = np.empty((0, 0), dtype=np.int8)
+        self._first = (0, 0)
+        self._known: dict[tuple[int, int], NDArray[np.int32]] = {}
+
+    def look(
+        self,
+        cells: NDArray[np.int8],
+        places: NDArray[np.int64],
+        reach_cells: float,
+        depth_cells: float,
+        first: tuple[int, int] = (0, 0),
+    ) -> Outlook:
+        """The unknown cells in view of each place.
+
+        Args:
+            cells: (rows, cols) int8, the map.
+            places: (N, 2) int64 rows and columns of free cells.
+            reach_cells: the lidar's range.
+            depth_cells: a ray ends after so many cells of unknown.
+            first: the map's first cell on a lattice that does not move when the map grows.
+        """
+        self._forget_changed(cells, reach_cells, first)
+        near = _near_frontier(read_only(cells), reach_cells)
+        keys = [tuple(place) for place in places.tolist()]
+        useful = near[places[:, 0] // 8, places[:, 1] // 8]
+        fresh = [i for i, key in enumerate(keys) if useful[i] and key not in self._known]
+        if fresh:
+            begin, seen = _look(read_only(cells), read_only(places[fresh]), reach_cells, depth_cells)
+            for k, i in enumerate(fresh):
+                self._known[keys[i]] = seen[begin[k] : begin[k + 1]]
+        return _joined([self._known[key] if useful[i] else _NOTHING for i, key in enumerate(keys)])
+
+    def _forget_changed(self, cells: NDArray[np.int8], reach: float, first: tuple[int, int]) -> None:
+        before, self._cells = self._cells, cells
+        if before.shape != cells.shape or first != self._first:
+            self._known.clear()
+            self._first = first
+            return
+        changed = before != cells
+        if not self._known or not changed.any():
+            return
+        keys = list(self._known)
+        outlook = _joined(list(self._known.values()))
+        stale = _touched(outlook.begin, outlook.cells, changed.ravel())
+        redrawn = np.argwhere(changed & (before != UNKNOWN))
+        if len(redrawn):
+            low, high = redrawn.min(axis=0) - reach - 1, redrawn.max(axis=0) + reach + 1
+            at = np.array(keys)
+            stale |= ((at >= low) & (at <= high)).all(axis=1)
+        for i in np.flatnonzero(stale):
+            del self._known[keys[i]]

@@ -1,0 +1,91 @@
+"""What stays unexplored, and why: one sentence for each reason."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from explore_bt.exploration.frontier import Frontier, find_frontiers
+from explore_bt.exploration.passage import passage_field
+from explore_bt.types import OccupancyGrid
+
+__all__ = ["sentences", "what_remains"]
+
+_AROUND_M = 1.0
+_EIGHT = np.ones((3, 3), dtype=np.int8)
+
+
+def what_remains(
+    grid: OccupancyGrid,
+    clearance_m: NDArray[np.float32],
+    travel_m: NDArray[np.float32],
+    radius_m: float,
+    *,
+    min_gain_m2: float = 0.1,
+    min_size_m: float = 0.15,
+) -> tuple[tuple[tuple[float, float], str], ...]:
+    """Frontiers that still border on unknown area of some size though no place worth a drive shows it.
+
+    Args:
+        grid: the map.
+        clearance_m: (rows, cols) float32, as from :func:`clearance_field`.
+        travel_m: (rows, cols) float32, as from :func:`travel_field` for a footprint of ``radius_m``.
+        radius_m: r, the footprint.
+        min_gain_m2: smaller patches of unknown are of no use.
+        min_size_m: smaller frontiers are leaks between beams.
+
+    Returns:
+        For each its middle (x, y, metres, ``map`` frame) and the reason. A frontier on floor that the robot
+        can come to shows nothing from anywhere, and is left out.
+    """
+    patches, _ = ndimage.label(np.pad(grid.unknown, 1, constant_values=True), _EIGHT)
+    area_m2 = np.bincount(patches.ravel()) * grid.resolution_m**2
+    area_m2[0] = 0.0
+    largest = ndimage.maximum_filter(area_m2[patches], size=3)[1:-1, 1:-1]
+    frontiers = [
+        frontier
+        for frontier in find_frontiers(grid, min_size_m)
+        if largest[tuple(frontier.cells.T)].max() >= min_gain_m2
+    ]
+    if not frontiers:
+        return ()
+    passage_m = passage_field(clearance_m, travel_m, radius_m)
+    found = ((frontier, _why(grid, frontier, travel_m, passage_m, radius_m)) for frontier in frontiers)
+    return tuple((frontier.centroid, why) for frontier, why in found if why)
+
+
+def _why(
+    grid: OccupancyGrid,
+    frontier: Frontier,
+    travel_m: NDArray[np.float32],
+    passage_m: NDArray[np.float32],
+    radius_m: float,
+) -> str:
+    around = round(_AROUND_M / grid.resolution_m)
+    low = np.maximum(frontier.cells.min(axis=0) - around, 0)
+    high = frontier.cells.max(axis=0) + around + 1
+    window = (slice(low[0], high[0]), slice(low[1], high[1]))
+    if not (passage_m[tuple(frontier.cells.T)] > 0.0).any():
+        return "no known floor leads there: behind glass, or seen through a gap"
+    if np.isfinite(travel_m[window]).any():
+        return ""
+    widest_m = float(passage_m[window].max())
+    missing_cm = math.ceil((radius_m - widest_m) * 100 - 1e-6)
+    return f"too narrow by {missing_cm} cm: passage clearance {widest_m:.2f} m, needs {radius_m:.2f} m"
+
+
+def sentences(places: Iterable[tuple[tuple[float, float], str]]) -> tuple[str, ...]:
+    """One sentence for each reason, with the first place and how many more there are."""
+    at: dict[str, list[tuple[float, float]]] = {}
+    for place, reason in places:
+        at.setdefault(reason, []).append(place)
+    return tuple(
+        f"({found[0][0]:.1f}, {found[0][1]:.1f})"
+        + (f" and {len(found) - 1} more" if len(found) > 1 else "")
+        + f": {reason}"
+        for reason, found in at.items()
+    )

@@ -1,0 +1,108 @@
+"""Where a robot may stand to look round, and what it would see from there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explore_bt.exploration.blocks import Blocks, pooled_map
+from explore_bt.exploration.outlook import Outlook, Outlooks
+from explore_bt.exploration.travel import travel_field
+from explore_bt.types import OccupancyGrid
+
+__all__ = ["GO_M", "LOOK_M", "ViewPlaces"]
+
+LOOK_M = 0.1
+"""Side of the blocks that are looked at: finer maps decide as this one does."""
+GO_M = 0.2
+"""Side of the blocks that ways are measured over."""
+_SPARSE_M = 0.6
+_SAME_M = 0.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """The reachable floor in blocks: room is the clearance of the roomiest cell of each, 0 where none is."""
+
+    blocks: Blocks
+    room_m: NDArray[np.float32]
+    radius_m: float
+    resolution_m: float
+    clearance_weight: float
+
+    def field(self, block: tuple[int, int], most_m: float) -> NDArray[np.float32]:
+        """Metres from a block to every other, tight ones counting more."""
+        return travel_field(
+            self.room_m,
+            block,
+            self.radius_m,
+            self.blocks.side * self.resolution_m,
+            clearance_weight=self.clearance_weight,
+            most_m=most_m,
+        )
+
+
+class ViewPlaces:
+    """Of every square of floor the roomiest cell that the robot can come to: most lie on the skeleton."""
+
+    def __init__(
+        self,
+        grid: OccupancyGrid,
+        clearance_m: NDArray[np.float32],
+        travel_m: NDArray[np.float32],
+        *,
+        radius_m: float,
+        is_dense: bool = False,
+        more: NDArray[np.float64] | None = None,
+        tried: NDArray[np.float64] | None = None,
+    ) -> None:
+        """Choose the places.
+
+        Args:
+            grid: the map.
+            clearance_m: (rows, cols) float32, as from :func:`clearance_field`.
+            travel_m: (rows, cols) float32, as from :func:`travel_field`.
+            radius_m: r that ``travel_m`` was made with.
+            is_dense: squares of 0.2 m instead of 0.6 m.
+            more: (N, 2) metres, further places; those out of reach are left out.
+            tried: (M, 2) metres; nothing within 0.3 m of these is a place.
+        """
+        self.grid = grid
+        self._radius_m = radius_m
+        self._room = np.where(np.isfinite(travel_m), clearance_m, np.float32(0.0))
+        best = Blocks.over(grid, GO_M if is_dense else _SPARSE_M).best_cells(self._room)
+        cells = best[best[..., 0] >= 0]
+        if more is not None and len(more):
+            extra = grid.cells_of(more)
+            inside = ((extra >= 0) & (extra < grid.shape)).all(axis=1)
+            extra = extra[inside]
+            cells = np.concatenate((cells, extra[self._room[tuple(extra.T)] > 0.0]))
+        if tried is not None and len(tried) and len(cells):
+            apart = grid.centers_of(cells)[:, None] - tried[None]
+            cells = cells[(np.hypot(apart[..., 0], apart[..., 1]) > _SAME_M).all(axis=1)]
+        self.cells: NDArray[np.int64] = cells
+
+    @cached_property
+    def xy(self) -> NDArray[np.float64]:
+        """(N, 2) metres, ``map`` frame."""
+        return self.grid.centers_of(self.cells)
+
+    def ways(self, clearance_weight: float) -> Ways:
+        """The floor between them."""
+        blocks = Blocks.over(self.grid, GO_M)
+        best = blocks.best_cells(self._room)
+        room = np.where(best[..., 0] >= 0, self._room[best[..., 0], best[..., 1]], np.float32(0.0))
+        return Ways(blocks, room, self._radius_m, self.grid.resolution_m, clearance_weight)
+
+    def look(self, outlooks: Outlooks, range_m: float, depth_m: float) -> tuple[Outlook, float, int]:
+        """What each shows, the area in m² of a cell in it, and how many cells there are."""
+        blocks = Blocks.over(self.grid, LOOK_M)
+        side_m = blocks.side * self.grid.resolution_m
+        cells = pooled_map(self.grid, blocks)
+        outlook = outlooks.look(
+            cells, blocks.of(self.cells), range_m / side_m, depth_m / side_m, blocks.first
+        )
+        return outlook, side_m**2, cells.size

@@ -1,0 +1,174 @@
+"""Places that together show all that is still to be seen, in an order that makes a short way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from explore_bt.exploration.outlook import Outlook, Outlooks
+from explore_bt.exploration.tour import open_tour
+from explore_bt.exploration.view_places import ViewPlaces
+
+__all__ = ["TourTaste", "View", "choose_views", "order_views"]
+
+_KEPT_WORTH = 1.5
+_BEYOND_M = 10.0
+_APART_M = 1e3
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A place to look from.
+
+    Attributes:
+        xy: metres, ``map`` frame.
+        gain_m2: unknown area that it shows and no view chosen before it does.
+        travel_m: way from the robot, tight metres counting more.
+        block: where it lies among the blocks that ways are measured over.
+    """
+
+    xy: tuple[float, float]
+    gain_m2: float
+    travel_m: float
+    block: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class TourTaste:
+    """What a tour is made by.
+
+    Attributes:
+        min_gain_m2: least new area that is worth a drive.
+        depth_m: how far into the unknown an opening is believed: the cheap guess of what lies behind.
+        most: views that are ordered at a time.
+        horizon_m: views farther than this (or 10 m more than the nearest) are left for later.
+        approach_m: what a view costs besides the way to it.
+        clearance_weight: what a metre at the walls costs more than a roomy one.
+        haste: see :func:`open_tour`.
+        keep_m: by how much another tour has to be shorter to turn the robot away from its goal.
+    """
+
+    min_gain_m2: float = 0.1
+    depth_m: float = 1.5
+    most: int = 12
+    horizon_m: float = 20.0
+    approach_m: float = 1.0
+    clearance_weight: float = 0.5
+    haste: float = 0.0
+    keep_m: float = 1.0
+
+
+@njit(cache=True)
+def _count_new(begin, cells, covered, active):  # type: ignore[no-untyped-def]  # numba kernel
+    """Cells not yet covered that each active place sees; 0 for the others."""
+    new = np.zeros(begin.size - 1, dtype=np.int64)
+    for i in range(begin.size - 1):
+        if active[i]:
+            for k in range(begin[i], begin[i + 1]):
+                if not covered[cells[k]]:
+                    new[i] += 1
+    return new
+
+
+def choose_views(
+    places: ViewPlaces,
+    outlooks: Outlooks,
+    here_xy: tuple[float, float],
+    range_m: float,
+    taste: TourTaste,
+    keep_xy: tuple[float, float] | None = None,
+) -> tuple[tuple[View, ...], NDArray[np.float64]]:
+    """Few views that together show what the places can show, near ones first.
+
+    Greedy set cover, where a set costs the way to it from the nearest view chosen so far (or the robot).
+
+    Args:
+        places: where the robot may look from.
+        outlooks: remembers what they see.
+        here_xy: the robot, metres, ``map`` frame.
+        range_m: the lidar's range.
+        taste: see there.
+        keep_xy: the present goal; it counts half as much again.
+
+    Returns:
+        N views, none where no place shows enough, and (N + 1, N + 1) metres between the robot and them.
+    """
+    nothing: tuple[tuple[View, ...], NDArray[np.float64]] = ((), np.zeros((1, 1)))
+    if not len(places.cells):
+        return nothing
+    outlook, cell_m2, size = places.look(outlooks, range_m, taste.depth_m)
+    active = np.diff(outlook.begin) * cell_m2 >= taste.min_gain_m2
+    ways = places.ways(taste.clearance_weight)
+    blocks = ways.blocks.of(places.cells)
+    here = ways.blocks.of(np.array([places.grid.cell_of(*here_xy)]))[0]
+    fields = [ways.field((int(here[0]), int(here[1])), np.inf)]
+    near = fields[0][tuple(blocks.T)].astype(np.float64)
+    active &= np.isfinite(near)
+    if not active.any():
+        return nothing
+    horizon_m = max(taste.horizon_m, float(near[active].min()) + _BEYOND_M)
+    active &= near <= horizon_m
+    favour = _favour(places, keep_xy)
+    views: list[View] = []
+    covered = np.zeros(size, dtype=np.bool_)
+    while len(views) < taste.most:
+        gain_m2 = _count_new(outlook.begin, outlook.cells, covered, active) * cell_m2
+        active &= gain_m2 >= taste.min_gain_m2
+        if not active.any():
+            break
+        best = int(np.argmax(np.where(active, favour * gain_m2 / (near + taste.approach_m), -1.0)))
+        block = (int(blocks[best, 0]), int(blocks[best, 1]))
+        x, y = places.xy[best].tolist()
+        views.append(View((x, y), float(gain_m2[best]), float(fields[0][block]), block))
+        covered[_seen(outlook, best)] = True
+        active[best] = False
+        fields.append(ways.field(block, 2.0 * horizon_m))
+        near = np.minimum(near, fields[-1][tuple(blocks.T)])
+    return tuple(views), _between(fields, views)
+
+
+def _favour(places: ViewPlaces, keep_xy: tuple[float, float] | None) -> NDArray[np.float64]:
+    favour = np.ones(len(places.cells))
+    if keep_xy is not None:
+        favour[np.hypot(*(places.xy - keep_xy).T) < places.grid.resolution_m] = _KEPT_WORTH
+    return favour
+
+
+def _seen(outlook: Outlook, place: int) -> NDArray[np.int32]:
+    return outlook.cells[outlook.begin[place] : outlook.begin[place + 1]]
+
+
+def _between(fields: list[NDArray[np.float32]], views: list[View]) -> NDArray[np.float64]:
+    rows, cols = np.array([view.block for view in views]).T
+    between = np.zeros((len(fields), len(fields)))
+    for row, field in enumerate(fields):
+        between[row, 1:] = field[rows, cols]
+    return np.where(np.isfinite(between), between, _APART_M)
+
+
+def order_views(
+    views: tuple[View, ...],
+    between_m: NDArray[np.float64],
+    first_leg_m: Callable[[View], float],
+    taste: TourTaste,
+    keep_xy: tuple[float, float] | None = None,
+) -> tuple[View, ...]:
+    """The views in the order of an open tour.
+
+    Args:
+        views: as from :func:`choose_views`.
+        between_m: the same.
+        first_leg_m: what it costs to go to a view next besides the way; so the rules for headings take part.
+        taste: see there.
+        keep_xy: the present goal.
+    """
+    between = between_m.copy()
+    for k, view in enumerate(views):
+        is_kept = keep_xy is not None and np.hypot(view.xy[0] - keep_xy[0], view.xy[1] - keep_xy[1]) < 0.1
+        between[0, k + 1] += first_leg_m(view) - (taste.keep_m if is_kept else 0.0)
+    weight = np.array([0.0, *(1.0 + min(view.gain_m2, 3.0) for view in views)])
+    return tuple(views[k - 1] for k in open_tour(between, weight, taste.haste)[1:])
