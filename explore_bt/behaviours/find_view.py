@@ -72,6 +72,9 @@ class FindView(Leaf):
     haste: Input[float] = Input(
         float, default=1.0, ge=0.0, doc="0: the shortest tour; more: what shows much comes early"
     )
+    scrap_weight: Input[float] = Input(
+        float, default=1.0, ge=0.0, doc="what the least view weighs in that, beside its area up to 3 m²"
+    )
     decay: Input[float] = Input(float, default=0.2, ge=0.0, doc="λ of rank gain, per metre")
     history: Input[HalfPlaneHistory] = Input(
         HalfPlaneHistory,
@@ -113,7 +116,9 @@ class FindView(Leaf):
 
     @property
     def _taste(self) -> TourTaste:
-        return TourTaste(self.min_gain, self.depth, keep_m=self.keep, haste=self.haste)
+        return TourTaste(
+            self.min_gain, self.depth, keep_m=self.keep, haste=self.haste, scrap_weight=self.scrap_weight
+        )
 
     def _best(self, margin_m: float, is_dense: bool) -> tuple[View | None, int]:
         view, here = self.robot.view(), self._here

@@ -146,9 +146,11 @@ class Outlooks:
         places: NDArray[np.int64],
         reach_cells: float,
         depth_cells: float,
+        *,
         first: tuple[int, int] = (0, 0),
+        near_cells: float | None = None,
     ) -> Outlook:
-        """The unknown cells in view of each place.
+        """The unknown cells in view of each place; none of places with no frontier near.
 
         Args:
             cells: (rows, cols) int8, the map.
@@ -156,9 +158,10 @@ class Outlooks:
             reach_cells: the lidar's range.
             depth_cells: a ray ends after so many cells of unknown.
             first: the map's first cell on a lattice that does not move when the map grows.
+            near_cells: how near a frontier has to be; the lidar's range by default.
         """
         self._forget_changed(cells, reach_cells, first)
-        near = _near_frontier(read_only(cells), reach_cells)
+        near = _near_frontier(read_only(cells), reach_cells if near_cells is None else near_cells)
         keys = [tuple(place) for place in places.tolist()]
         useful = near[places[:, 0] // 8, places[:, 1] // 8]
         fresh = [i for i, key in enumerate(keys) if useful[i] and key not in self._known]

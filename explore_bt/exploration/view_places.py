@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.exploration.blocks import Blocks, pooled_map
 from explore_bt.exploration.outlook import Outlook, Outlooks
 from explore_bt.exploration.travel import travel_field
-from explore_bt.types import OccupancyGrid
+from explore_bt.types import FREE, UNKNOWN, OccupancyGrid
 
 __all__ = ["GO_M", "LOOK_M", "ViewPlaces"]
 
@@ -21,6 +22,7 @@ GO_M = 0.2
 """Side of the blocks that ways are measured over."""
 _SPARSE_M = 0.6
 _SAME_M = 0.3
+_NEAR_M = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,6 +73,7 @@ class ViewPlaces:
             tried: (M, 2) metres; nothing within 0.3 m of these is a place.
         """
         self.grid = grid
+        self._is_dense = is_dense
         self._radius_m = radius_m
         self._room = np.where(np.isfinite(travel_m), clearance_m, np.float32(0.0))
         best = Blocks.over(grid, GO_M if is_dense else _SPARSE_M).best_cells(self._room)
@@ -97,12 +100,35 @@ class ViewPlaces:
         room = np.where(best[..., 0] >= 0, self._room[best[..., 0], best[..., 1]], np.float32(0.0))
         return Ways(blocks, room, self._radius_m, self.grid.resolution_m, clearance_weight)
 
-    def look(self, outlooks: Outlooks, range_m: float, depth_m: float) -> tuple[Outlook, float, int]:
-        """What each shows, the area in m² of a cell in it, and how many cells there are."""
+    def look(
+        self, outlooks: Outlooks, range_m: float, depth_m: float, min_patch_m2: float
+    ) -> tuple[Outlook, float, int]:
+        """What each shows, the area in m² of a cell in it, and how many cells there are.
+
+        Args:
+            outlooks: remembers what was seen before.
+            range_m: the lidar's range.
+            depth_m: how far into the unknown an opening is believed.
+            min_patch_m2: smaller patches of unknown are noise between beams, and looked over.
+        """
         blocks = Blocks.over(self.grid, LOOK_M)
         side_m = blocks.side * self.grid.resolution_m
-        cells = pooled_map(self.grid, blocks)
+        cells = _without_specks(pooled_map(self.grid, blocks), min_patch_m2 / side_m**2)
         outlook = outlooks.look(
-            cells, blocks.of(self.cells), range_m / side_m, depth_m / side_m, blocks.first
+            cells,
+            blocks.of(self.cells),
+            range_m / side_m,
+            depth_m / side_m,
+            first=blocks.first,
+            near_cells=(_NEAR_M if self._is_dense else range_m) / side_m,
         )
         return outlook, side_m**2, cells.size
+
+
+def _without_specks(cells: NDArray[np.int8], least_cells: float) -> NDArray[np.int8]:
+    """Unknown patches of fewer cells (joined through edges, none at the map's edge) become floor."""
+    unknown = np.ascontiguousarray(np.pad(cells == UNKNOWN, 1, constant_values=True)).view(np.uint8)
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(unknown, connectivity=4)
+    is_speck = stats[:, cv2.CC_STAT_AREA] < least_cells
+    is_speck[0] = False
+    return np.where(is_speck[labels[1:-1, 1:-1]], np.int8(FREE), cells)

@@ -49,6 +49,7 @@ class TourTaste:
         approach_m: what a view costs besides the way to it.
         clearance_weight: what a metre at the walls costs more than a roomy one.
         haste: see :func:`open_tour`.
+        scrap_weight: what the least view weighs in it, beside its gain up to 3 m².
         keep_m: by how much another tour has to be shorter to turn the robot away from its goal.
     """
 
@@ -58,7 +59,8 @@ class TourTaste:
     horizon_m: float = 20.0
     approach_m: float = 1.0
     clearance_weight: float = 0.5
-    haste: float = 0.0
+    haste: float = 1.0
+    scrap_weight: float = 1.0
     keep_m: float = 1.0
 
 
@@ -100,7 +102,7 @@ def choose_views(
     nothing: tuple[tuple[View, ...], NDArray[np.float64]] = ((), np.zeros((1, 1)))
     if not len(places.cells):
         return nothing
-    outlook, cell_m2, size = places.look(outlooks, range_m, taste.depth_m)
+    outlook, cell_m2, size = places.look(outlooks, range_m, taste.depth_m, 0.5 * taste.min_gain_m2)
     active = np.diff(outlook.begin) * cell_m2 >= taste.min_gain_m2
     ways = places.ways(taste.clearance_weight)
     blocks = ways.blocks.of(places.cells)
@@ -170,5 +172,5 @@ def order_views(
     for k, view in enumerate(views):
         is_kept = keep_xy is not None and np.hypot(view.xy[0] - keep_xy[0], view.xy[1] - keep_xy[1]) < 0.1
         between[0, k + 1] += first_leg_m(view) - (taste.keep_m if is_kept else 0.0)
-    weight = np.array([0.0, *(1.0 + min(view.gain_m2, 3.0) for view in views)])
+    weight = np.array([0.0, *(taste.scrap_weight + min(view.gain_m2, 3.0) for view in views)])
     return tuple(views[k - 1] for k in open_tour(between, weight, taste.haste)[1:])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from explore_bt.interfaces import ControlOutput, ControlStatus
 from explore_bt.types import Path, Pose2, Twist2, wrap_angle
@@ -53,13 +54,15 @@ class GridPilot:
 
     @property
     def path_ahead(self) -> Path | None:
-        """What is left of the path from the place nearest to the robot on; None while holding."""
-        if self.path is None or self._pose is None:
+        """From where the robot is along what is left of the path; None while holding."""
+        if self.path is None or self._pose is None or len(self.path.poses) == 1:
             return self.path
-        offsets = self.path.poses[:, :2] - np.array(self._pose.xy)
-        nearest = int(np.argmin(np.einsum("ij,ij->i", offsets, offsets)))
-        nearest = max(0, min(nearest, len(offsets) - 2))  # one pose alone would be a turn in place
-        return Path(self.path.poses[nearest:], self.path.clearance_m[nearest:])
+        after = _next_pose(self.path.poses[:, :2], np.array(self._pose.xy))
+        here = [self._pose.x, self._pose.y, self._pose.yaw_rad]
+        return Path(
+            np.vstack((here, self.path.poses[after:])),
+            np.append(self.path.clearance_m[after - 1], self.path.clearance_m[after:]),
+        )
 
     @property
     def output(self) -> ControlOutput:
@@ -77,3 +80,13 @@ class GridPilot:
         if len(path.poses) == 1:
             return abs(wrap_angle(pose.yaw_rad - path.goal.yaw_rad)) <= _ARRIVED_RAD
         return pose.distance_to(path.goal) <= _ARRIVED_M
+
+
+def _next_pose(points: NDArray[np.float64], here: NDArray[np.float64]) -> int:
+    """Index of the end of the piece of a polyline (two points or more) that is nearest to a place."""
+    along = np.diff(points, axis=0)
+    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-12)
+    share = np.clip(np.einsum("ij,ij->i", here - points[:-1], along) / square, 0.0, 1.0)
+    off = points[:-1] + share[:, None] * along - here
+    nearest = int(np.argmin(np.einsum("ij,ij->i", off, off)))
+    return min(nearest + 1 + int(share[nearest] > 0.99), len(points) - 1)
