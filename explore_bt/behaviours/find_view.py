@@ -15,6 +15,7 @@ from explore_bt.exploration import (
     TourTaste,
     View,
     ViewPlaces,
+    ViewSet,
     choose_views,
     find_free_sectors,
     next_waypoint,
@@ -34,6 +35,7 @@ _HERE_M = 0.15
 _SQUEEZE_M = 0.03
 _MARGIN_M = 0.02
 _TRIES = 20
+_SCRAP_M2 = 0.5
 
 
 class FindView(Leaf):
@@ -75,6 +77,13 @@ class FindView(Leaf):
     scrap_weight: Input[float] = Input(
         float, default=1.0, ge=0.0, doc="what the least view weighs in that, beside its area up to 3 m²"
     )
+    leave: Input[float] = Input(
+        float,
+        default=0.0,
+        ge=0.0,
+        le=0.1,
+        doc="share of the known floor that may be left unseen in scraps of less than 0.5 m²",
+    )
     decay: Input[float] = Input(float, default=0.2, ge=0.0, doc="λ of rank gain, per metre")
     history: Input[HalfPlaneHistory] = Input(
         HalfPlaneHistory,
@@ -95,13 +104,14 @@ class FindView(Leaf):
         """The best of the thinned places; where those show nothing of all places, at last of tight ones."""
         for margin_m, is_dense in ((_MARGIN_M, False), (_MARGIN_M, True), (0.0, True), (-_SQUEEZE_M, True)):
             for _ in range(_TRIES):
-                view, count = self._best(margin_m, is_dense)
-                if view is None:
+                chosen = self._choose(margin_m, is_dense)
+                if self._is_too_little(chosen):
                     break
+                view = self._best(chosen)
                 if math.dist(view.xy, self._here.xy) > _HERE_M:
-                    return self._take(view, count)
+                    return self._take(view, len(chosen.views))
                 self._give_up(view)
-        return self._conclude()
+        return self._conclude(chosen)
 
     @property
     def _outlooks(self) -> Outlooks:
@@ -120,31 +130,39 @@ class FindView(Leaf):
             self.min_gain, self.depth, keep_m=self.keep, haste=self.haste, scrap_weight=self.scrap_weight
         )
 
-    def _best(self, margin_m: float, is_dense: bool) -> tuple[View | None, int]:
+    def _choose(self, margin_m: float, is_dense: bool) -> ViewSet:
         view, here = self.robot.view(), self._here
         radius_m = self.robot.footprint_radius_m + margin_m
         at = np.array([view.grid.cell_of(*here.xy)])
         travel_m = travel_field(view.clearance_m, at, radius_m, view.grid.resolution_m)
-        goal: Waypoint | None = self.recall("goal", None)
-        keep_xy = goal.position if goal is not None else None
-        more = [*self._safe_waypoints(), *([keep_xy] if keep_xy else [])]
+        keep_xy = self._present_goal
         places = ViewPlaces(
             view.grid,
             view.clearance_m,
             travel_m,
             radius_m=radius_m,
             is_dense=is_dense,
-            more=np.array(more, dtype=np.float64).reshape(-1, 2),
-            tried=np.array([place.position for place in self._tried()], dtype=np.float64).reshape(-1, 2),
+            more=np.array([*self._safe_waypoints(), *([keep_xy] if keep_xy else [])]).reshape(-1, 2),
+            tried=np.array([place.position for place in self._tried()]).reshape(-1, 2),
         )
-        views, between_m = choose_views(
-            places, self._outlooks, here.xy, self.robot.lidar_range_m, self._taste, keep_xy
-        )
-        if not views:
-            return None, 0
+        return choose_views(places, self._outlooks, here.xy, self.robot.lidar_range_m, self._taste, keep_xy)
+
+    @property
+    def _present_goal(self) -> tuple[float, float] | None:
+        goal: Waypoint | None = self.recall("goal", None)
+        return None if goal is None else goal.position
+
+    def _is_too_little(self, chosen: ViewSet) -> bool:
+        """Whether nothing is to be seen, or only scraps that together are not worth the way."""
+        grid = self.robot.view().grid
+        floor_m2 = float(np.count_nonzero(grid.free)) * grid.resolution_m**2
+        largest_m2 = max((view.gain_m2 for view in chosen.views), default=0.0)
+        return not chosen.views or (largest_m2 < _SCRAP_M2 and chosen.total_m2 < self.leave * floor_m2)
+
+    def _best(self, chosen: ViewSet) -> View:
         if self.rank == "gain":
-            return max(views, key=self._utility), len(views)
-        return order_views(views, between_m, self._first_leg_m, self._taste, keep_xy)[0], len(views)
+            return max(chosen.views, key=self._utility)
+        return order_views(chosen, self._first_leg_m, self._taste, self._present_goal)[0]
 
     def _safe_waypoints(self) -> list[tuple[float, float]]:
         """Steps 1 to 3 of the paper: a waypoint along the middle of every free sector, the safest first."""
@@ -189,14 +207,15 @@ class FindView(Leaf):
     def _tried(self) -> tuple[GivenUp, ...]:
         return self.recall("given_up", ())
 
-    def _conclude(self) -> Status:
+    def _conclude(self, chosen: ViewSet) -> Status:
         view = self.robot.view()
         radius_m = self.robot.footprint_radius_m
         at: NDArray[np.int64] = np.array([view.grid.cell_of(*self._here.xy)])
         travel_m = travel_field(view.clearance_m, at, radius_m, view.grid.resolution_m)
         left = what_remains(view.grid, view.clearance_m, travel_m, radius_m, min_gain_m2=self.min_gain)
         failed = ((place.position, place.reason) for place in self._tried())
-        self.left_open = sentences((*left, *failed))
+        scraps = ((scrap.xy, "shows too little to be worth the way") for scrap in chosen.views)
+        self.left_open = sentences((*left, *failed, *scraps))
         self.reason = f"no reachable place shows {self.min_gain:.2f} m² of new area or more"
         self.say(self.reason)
         return Status.FAILURE

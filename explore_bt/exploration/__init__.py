@@ -47,7 +47,7 @@ from explore_bt.exploration.revisit import is_allowed, repeated_visit
 from explore_bt.exploration.tour import open_tour
 from explore_bt.exploration.travel import nearest_reaching_cell, travel_field
 from explore_bt.exploration.view_places import ViewPlaces
-from explore_bt.exploration.view_tour import TourTaste, View, choose_views, order_views
+from explore_bt.exploration.view_tour import TourTaste, View, ViewSet, choose_views, order_views
 from explore_bt.exploration.viewpoint import LeftOpen, Viewpoint, ViewpointChoice, reachable_frontiers
 from explore_bt.exploration.waypoint import next_waypoint
 
@@ -63,6 +63,7 @@ __all__ = [
     "TourTaste",
     "View",
     "ViewPlaces",
+    "ViewSet",
     "Viewpoint",
     "ViewpointChoice",
     "align_se2",

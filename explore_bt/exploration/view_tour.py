@@ -13,7 +13,7 @@ from explore_bt.exploration.outlook import Outlook, Outlooks
 from explore_bt.exploration.tour import open_tour
 from explore_bt.exploration.view_places import ViewPlaces
 
-__all__ = ["TourTaste", "View", "choose_views", "order_views"]
+__all__ = ["TourTaste", "View", "ViewSet", "choose_views", "order_views"]
 
 _KEPT_WORTH = 1.5
 _BEYOND_M = 10.0
@@ -35,6 +35,21 @@ class View:
     gain_m2: float
     travel_m: float
     block: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ViewSet:
+    """Views that together show what there is to see.
+
+    Attributes:
+        views: near ones first; none where no place shows enough.
+        between_m: (N + 1, N + 1) metres between the robot (first) and them.
+        total_m2: what all places in reach show, also those beyond the horizon.
+    """
+
+    views: tuple[View, ...]
+    between_m: NDArray[np.float64]
+    total_m2: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +98,7 @@ def choose_views(
     range_m: float,
     taste: TourTaste,
     keep_xy: tuple[float, float] | None = None,
-) -> tuple[tuple[View, ...], NDArray[np.float64]]:
+) -> ViewSet:
     """Few views that together show what the places can show, near ones first.
 
     Greedy set cover, where a set costs the way to it from the nearest view chosen so far (or the robot).
@@ -95,11 +110,8 @@ def choose_views(
         range_m: the lidar's range.
         taste: see there.
         keep_xy: the present goal; it counts half as much again.
-
-    Returns:
-        N views, none where no place shows enough, and (N + 1, N + 1) metres between the robot and them.
     """
-    nothing: tuple[tuple[View, ...], NDArray[np.float64]] = ((), np.zeros((1, 1)))
+    nothing = ViewSet((), np.zeros((1, 1)), 0.0)
     if not len(places.cells):
         return nothing
     outlook, cell_m2, size = places.look(outlooks, range_m, taste.depth_m, 0.5 * taste.min_gain_m2)
@@ -112,6 +124,7 @@ def choose_views(
     active &= np.isfinite(near)
     if not active.any():
         return nothing
+    total_m2 = float(np.count_nonzero(_cover(outlook, active, size))) * cell_m2
     horizon_m = max(taste.horizon_m, float(near[active].min()) + _BEYOND_M)
     active &= near <= horizon_m
     favour = _favour(places, keep_xy)
@@ -130,7 +143,13 @@ def choose_views(
         active[best] = False
         fields.append(ways.field(block, 2.0 * horizon_m))
         near = np.minimum(near, fields[-1][tuple(blocks.T)])
-    return tuple(views), _between(fields, views)
+    return ViewSet(tuple(views), _between(fields, views), total_m2)
+
+
+def _cover(outlook: Outlook, active: NDArray[np.bool_], size: int) -> NDArray[np.bool_]:
+    covered = np.zeros(size, dtype=np.bool_)
+    covered[outlook.cells[np.repeat(active, np.diff(outlook.begin))]] = True
+    return covered
 
 
 def _favour(places: ViewPlaces, keep_xy: tuple[float, float] | None) -> NDArray[np.float64]:
@@ -153,8 +172,7 @@ def _between(fields: list[NDArray[np.float32]], views: list[View]) -> NDArray[np
 
 
 def order_views(
-    views: tuple[View, ...],
-    between_m: NDArray[np.float64],
+    chosen: ViewSet,
     first_leg_m: Callable[[View], float],
     taste: TourTaste,
     keep_xy: tuple[float, float] | None = None,
@@ -162,13 +180,12 @@ def order_views(
     """The views in the order of an open tour.
 
     Args:
-        views: as from :func:`choose_views`.
-        between_m: the same.
+        chosen: as from :func:`choose_views`.
         first_leg_m: what it costs to go to a view next besides the way; so the rules for headings take part.
         taste: see there.
         keep_xy: the present goal.
     """
-    between = between_m.copy()
+    views, between = chosen.views, chosen.between_m.copy()
     for k, view in enumerate(views):
         is_kept = keep_xy is not None and np.hypot(view.xy[0] - keep_xy[0], view.xy[1] - keep_xy[1]) < 0.1
         between[0, k + 1] += first_leg_m(view) - (taste.keep_m if is_kept else 0.0)
