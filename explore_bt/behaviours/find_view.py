@@ -72,7 +72,7 @@ class FindView(Leaf):
         Length, default=1.0, ge=0.0, doc="how much shorter a tour has to be to give up the present goal"
     )
     haste: Input[float] = Input(
-        float, default=1.0, ge=0.0, doc="0: the shortest tour; more: what shows much comes early"
+        float, default=3.0, ge=0.0, doc="0: the shortest tour; more: what shows much comes early"
     )
     scrap_weight: Input[float] = Input(
         float, default=1.0, ge=0.0, doc="what the least view weighs in that, beside its area up to 3 m²"

@@ -54,7 +54,9 @@ def what_remains(
     if not frontiers:
         return ()
     passage_m = passage_field(clearance_m, travel_m, radius_m)
-    found = ((frontier, _why(grid, frontier, travel_m, passage_m, radius_m)) for frontier in frontiers)
+    behind_m = np.where(clearance_m >= radius_m, passage_m, np.float32(0.0))  # in front it tapers off
+    passages = (passage_m, behind_m)
+    found = ((frontier, _why(grid, frontier, travel_m, passages, radius_m)) for frontier in frontiers)
     return tuple((frontier.centroid, why) for frontier, why in found if why)
 
 
@@ -62,18 +64,18 @@ def _why(
     grid: OccupancyGrid,
     frontier: Frontier,
     travel_m: NDArray[np.float32],
-    passage_m: NDArray[np.float32],
+    passages_m: tuple[NDArray[np.float32], NDArray[np.float32]],
     radius_m: float,
 ) -> str:
     around = round(_AROUND_M / grid.resolution_m)
     low = np.maximum(frontier.cells.min(axis=0) - around, 0)
     high = frontier.cells.max(axis=0) + around + 1
     window = (slice(low[0], high[0]), slice(low[1], high[1]))
-    if not (passage_m[tuple(frontier.cells.T)] > 0.0).any():
+    if not (passages_m[0][tuple(frontier.cells.T)] > 0.0).any():
         return "no known floor leads there: behind glass, or seen through a gap"
     if np.isfinite(travel_m[window]).any():
         return ""
-    widest_m = float(passage_m[window].max())
+    widest_m = float(passages_m[1][window].max()) or float(passages_m[0][window].max())
     missing_cm = math.ceil((radius_m - widest_m) * 100 - 1e-6)
     return f"too narrow by {missing_cm} cm: passage clearance {widest_m:.2f} m, needs {radius_m:.2f} m"
 

@@ -74,7 +74,7 @@ class TourTaste:
     horizon_m: float = 20.0
     approach_m: float = 1.0
     clearance_weight: float = 0.5
-    haste: float = 1.0
+    haste: float = 3.0
     scrap_weight: float = 1.0
     keep_m: float = 1.0
 
