@@ -31,13 +31,24 @@ class Blocks:
     first: tuple[int, int]
 
     @staticmethod
-    def over(grid: OccupancyGrid, side_m: float) -> Blocks:
-        """Blocks of about ``side_m``, a whole number of cells."""
+    def over(grid: OccupancyGrid, side_m: float, chunk: int = 1) -> Blocks:
+        """Blocks of about ``side_m``, a whole number of cells, over the map.
+
+        Args:
+            grid: the map.
+            side_m: edge of a block, metres.
+            chunk: begin and end at whole multiples of so many blocks; a map that grows cell by cell then
+                seldom changes their number.
+        """
         side = max(1, round(side_m / grid.resolution_m))
         col, row = (round(corner / grid.resolution_m) for corner in grid.origin_xy)
-        shift = (row % side, col % side)
-        rows, cols = (-(-(size + before) // side) for size, before in zip(grid.shape, shift, strict=True))
-        return Blocks(side, shift, (rows, cols), (row // side, col // side))
+        step = side * chunk
+        first = (row // step * chunk, col // step * chunk)
+        shift = (row - first[0] * side, col - first[1] * side)
+        rows, cols = (
+            -(-(size + before) // step) * chunk for size, before in zip(grid.shape, shift, strict=True)
+        )
+        return Blocks(side, shift, (rows, cols), first)
 
     def of(self, cells: NDArray[np.integer]) -> NDArray[np.int64]:
         """(N, 2) rows and columns of the blocks that hold (N, 2) cells."""
@@ -81,7 +92,5 @@ def _pool(cells, side, row0, col0, rows, cols):  # type: ignore[no-untyped-def] 
 
 def pooled_map(grid: OccupancyGrid, blocks: Blocks) -> NDArray[np.int8]:
     """(rows, columns) int8 of blocks: ``OCCUPIED``, ``FREE`` or ``UNKNOWN``."""
-    if blocks.side == 1:
-        return read_only(grid.cells)
     row0, col0 = blocks.shift
     return _pool(read_only(grid.cells), blocks.side, row0, col0, blocks.shape[0], blocks.shape[1])

@@ -16,6 +16,7 @@ __all__ = ["Outlook", "Outlooks"]
 
 _TURN = 2.0 * math.pi
 _NOTHING = np.empty(0, dtype=np.int32)
+_TILE = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,17 +33,34 @@ class Outlook:
 
 
 @njit(cache=True)
+def _appended(values, count, value):  # type: ignore[no-untyped-def]  # numba kernel
+    if count == values.size:
+        more = np.empty(2 * values.size, dtype=values.dtype)
+        more[:count] = values
+        values = more
+    values[count] = value
+    return values
+
+
+@njit(cache=True)
 def _look(cells, eyes, reach, depth):  # type: ignore[no-untyped-def]  # numba kernel
     """Unknown cells in view of each of (N, 2) cells, as far as ``depth`` cells into the unknown.
+
+    Also the tiles of 4 × 4 cells that its rays touch: nothing outside of these has a say.
 
     One ray to each cell's width on the circle of reach, after Amanatides & Woo, 1987.
     """
     rows, cols = cells.shape
     rays = int(_TURN * reach)
     seen = np.full(rows * cols, -1, dtype=np.int32)
-    begin = np.zeros(eyes.shape[0] + 1, dtype=np.int64)
-    out = np.empty(4096, dtype=np.int32)
-    count = 0
+    begin, begin_tiles = (
+        np.zeros(eyes.shape[0] + 1, dtype=np.int64),
+        np.zeros(eyes.shape[0] + 1, dtype=np.int64),
+    )
+    out, tiles = np.empty(4096, dtype=np.int32), np.empty(4096, dtype=np.int32)
+    wide = cols // _TILE + 1
+    touched = np.full((rows // _TILE + 1) * wide, -1, dtype=np.int32)
+    count, count_tiles = 0, 0
     for i in range(eyes.shape[0]):
         for k in range(rays):
             angle = _TURN * k / rays
@@ -56,6 +74,11 @@ def _look(cells, eyes, reach, depth):  # type: ignore[no-untyped-def]  # numba k
             while entry <= reach:
                 if not (0 <= row < rows and 0 <= col < cols):
                     break
+                tile = row // _TILE * wide + col // _TILE
+                if touched[tile] != i:
+                    touched[tile] = i
+                    tiles = _appended(tiles, count_tiles, tile)
+                    count_tiles += 1
                 value = cells[row, col]
                 if value == OCCUPIED:
                     break
@@ -67,11 +90,7 @@ def _look(cells, eyes, reach, depth):  # type: ignore[no-untyped-def]  # numba k
                     flat = row * cols + col
                     if seen[flat] != i:
                         seen[flat] = i
-                        if count == out.size:
-                            more = np.empty(2 * out.size, dtype=np.int32)
-                            more[:count] = out
-                            out = more
-                        out[count] = flat
+                        out = _appended(out, count, flat)
                         count += 1
                 entry = leave
                 if next_col <= next_row:
@@ -80,8 +99,8 @@ def _look(cells, eyes, reach, depth):  # type: ignore[no-untyped-def]  # numba k
                 else:
                     row += step_row
                     next_row += per_row
-        begin[i + 1] = count
-    return begin, out[:count].copy()
+        begin[i + 1], begin_tiles[i + 1] = count, count_tiles
+    return begin, out[:count].copy(), begin_tiles, tiles[:count_tiles].copy()
 
 
 @njit(cache=True)
@@ -111,15 +130,27 @@ def _near_frontier(cells, reach):  # type: ignore[no-untyped-def]  # numba kerne
 
 
 @njit(cache=True)
-def _touched(begin, cells, changed):  # type: ignore[no-untyped-def]  # numba kernel
-    """Which places have a changed cell among those they see."""
+def _touched(begin, tiles, changed):  # type: ignore[no-untyped-def]  # numba kernel
+    """Which places have a changed tile among those that their rays touch."""
     touched = np.zeros(begin.size - 1, dtype=np.bool_)
     for i in range(begin.size - 1):
         for k in range(begin[i], begin[i + 1]):
-            if changed[cells[k]]:
+            if changed[tiles[k]]:
                 touched[i] = True
                 break
     return touched
+
+
+@njit(cache=True)
+def _changed_tiles(before, after):  # type: ignore[no-untyped-def]  # numba kernel
+    rows, cols = after.shape
+    wide = cols // _TILE + 1
+    changed = np.zeros((rows // _TILE + 1) * wide, dtype=np.bool_)
+    for row in range(rows):
+        for col in range(cols):
+            if before[row, col] != after[row, col]:
+                changed[row // _TILE * wide + col // _TILE] = True
+    return changed
 
 
 def _joined(parts: list[NDArray[np.int32]]) -> Outlook:
@@ -128,17 +159,21 @@ def _joined(parts: list[NDArray[np.int32]]) -> Outlook:
     return Outlook(begin, np.concatenate((_NOTHING, *parts)))
 
 
-class Outlooks:
-    """Remembers what each place sees; looks again only where that has changed.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Known:
+    """What one place sees, and the tiles that this depends on."""
 
-    What a place sees changes only if an unknown cell in its view becomes known (all rays end there), or if
-    floor or a wall within reach becomes something else.
-    """
+    cells: NDArray[np.int32]
+    tiles: NDArray[np.int32]
+
+
+class Outlooks:
+    """Remembers what each place sees; looks again only where a ray of it met something that has changed."""
 
     def __init__(self) -> None:
         self._cells: NDArray[np.int8] = np.empty((0, 0), dtype=np.int8)
         self._first = (0, 0)
-        self._known: dict[tuple[int, int], NDArray[np.int32]] = {}
+        self._known: dict[tuple[int, int], _Known] = {}
 
     def look(
         self,
@@ -155,38 +190,34 @@ class Outlooks:
         Args:
             cells: (rows, cols) int8, the map.
             places: (N, 2) int64 rows and columns of free cells.
-            reach_cells: the lidar's range.
-            depth_cells: a ray ends after so many cells of unknown.
+            reach_cells: the lidar's range; the same in every call.
+            depth_cells: a ray ends after so many cells of unknown; the same in every call.
             first: the map's first cell on a lattice that does not move when the map grows.
             near_cells: how near a frontier has to be; the lidar's range by default.
         """
-        self._forget_changed(cells, reach_cells, first)
+        self._forget_changed(cells, first)
         near = _near_frontier(read_only(cells), reach_cells if near_cells is None else near_cells)
-        keys = [tuple(place) for place in places.tolist()]
+        keys = [(row, col) for row, col in places.tolist()]
         useful = near[places[:, 0] // 8, places[:, 1] // 8]
         fresh = [i for i, key in enumerate(keys) if useful[i] and key not in self._known]
         if fresh:
-            begin, seen = _look(read_only(cells), read_only(places[fresh]), reach_cells, depth_cells)
+            begin, seen, begin_tiles, tiles = _look(
+                read_only(cells), read_only(places[fresh]), reach_cells, depth_cells
+            )
             for k, i in enumerate(fresh):
-                self._known[keys[i]] = seen[begin[k] : begin[k + 1]]
-        return _joined([self._known[key] if useful[i] else _NOTHING for i, key in enumerate(keys)])
+                self._known[keys[i]] = _Known(
+                    seen[begin[k] : begin[k + 1]], tiles[begin_tiles[k] : begin_tiles[k + 1]]
+                )
+        return _joined([self._known[key].cells if useful[i] else _NOTHING for i, key in enumerate(keys)])
 
-    def _forget_changed(self, cells: NDArray[np.int8], reach: float, first: tuple[int, int]) -> None:
+    def _forget_changed(self, cells: NDArray[np.int8], first: tuple[int, int]) -> None:
         before, self._cells = self._cells, cells
         if before.shape != cells.shape or first != self._first:
             self._known.clear()
             self._first = first
-            return
-        changed = before != cells
-        if not self._known or not changed.any():
-            return
-        keys = list(self._known)
-        outlook = _joined(list(self._known.values()))
-        stale = _touched(outlook.begin, outlook.cells, changed.ravel())
-        redrawn = np.argwhere(changed & (before != UNKNOWN))
-        if len(redrawn):
-            low, high = redrawn.min(axis=0) - reach - 1, redrawn.max(axis=0) + reach + 1
-            at = np.array(keys)
-            stale |= ((at >= low) & (at <= high)).all(axis=1)
-        for i in np.flatnonzero(stale):
-            del self._known[keys[i]]
+        elif self._known:
+            changed = _changed_tiles(read_only(before), read_only(cells))
+            tiles = _joined([known.tiles for known in self._known.values()])
+            stale = _touched(tiles.begin, tiles.cells, changed)
+            for key in [key for key, is_stale in zip(self._known, stale, strict=True) if is_stale]:
+                del self._known[key]

@@ -23,6 +23,7 @@ GO_M = 0.2
 _SPARSE_M = 0.6
 _SAME_M = 0.3
 _NEAR_M = 2.0
+_CHUNK = 64
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,7 +112,7 @@ class ViewPlaces:
             depth_m: how far into the unknown an opening is believed.
             min_patch_m2: smaller patches of unknown are noise between beams, and looked over.
         """
-        blocks = Blocks.over(self.grid, LOOK_M)
+        blocks = Blocks.over(self.grid, LOOK_M, _CHUNK)
         side_m = blocks.side * self.grid.resolution_m
         cells = _without_specks(pooled_map(self.grid, blocks), min_patch_m2 / side_m**2)
         outlook = outlooks.look(
