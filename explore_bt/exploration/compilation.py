@@ -7,8 +7,13 @@ import numpy as np
 from explore_bt.exploration.choice import choose_viewpoints
 from explore_bt.exploration.clearance import clearance_field
 from explore_bt.exploration.frontier import find_frontiers
+from explore_bt.exploration.grid_scan import scan_of_grid
+from explore_bt.exploration.outlook import Outlooks
+from explore_bt.exploration.remains import what_remains
 from explore_bt.exploration.travel import travel_field
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from explore_bt.exploration.view_places import ViewPlaces
+from explore_bt.exploration.view_tour import TourTaste, choose_views, order_views
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
 
 __all__ = ["warm_up"]
 
@@ -27,3 +32,9 @@ def warm_up() -> None:
     for weight in (0.0, 1.0):
         travel_m = travel_field(clearance_m, (12, 10), 0.2, grid.resolution_m, clearance_weight=weight)
     choose_viewpoints(grid, clearance_m, travel_m, find_frontiers(grid), 1.2, radius_m=0.2)
+    scan_of_grid(grid, Pose2(1.0, 1.0, 0.0), 1.2)
+    places, outlooks = ViewPlaces(grid, clearance_m, travel_m, radius_m=0.2), Outlooks()
+    for _ in range(2):  # from the second time on it compares with the first
+        chosen = choose_views(places, outlooks, (1.0, 1.0), 1.2, TourTaste())
+    order_views(chosen, lambda _: 0.0, TourTaste())
+    what_remains(grid, clearance_m, travel_m, 0.2)
