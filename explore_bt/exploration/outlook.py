@@ -17,6 +17,7 @@ __all__ = ["Outlook", "Outlooks"]
 _TURN = 2.0 * math.pi
 _NOTHING = np.empty(0, dtype=np.int32)
 _TILE = 4
+_RAYS_PER_CELL = 0.6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,62 +44,78 @@ def _appended(values, count, value):  # type: ignore[no-untyped-def]  # numba ke
 
 
 @njit(cache=True)
-def _look(cells, eyes, reach, depth):  # type: ignore[no-untyped-def]  # numba kernel
+def _rays(reach):  # type: ignore[no-untyped-def]  # numba kernel
+    """Cells on every ray from a cell's middle; at the circle of reach rays are 1.7 cells apart.
+
+    After Amanatides & Woo, 1987. All rays one after the other: where each begins, then for each cell its row
+    and column from the eye's, and the length of the ray in it.
+    """
+    count = int(_RAYS_PER_CELL * _TURN * reach)
+    begin = np.zeros(count + 1, dtype=np.int64)
+    size = count * (3 * int(reach) + 6)
+    rows, cols = np.empty(size, dtype=np.int32), np.empty(size, dtype=np.int32)
+    lengths = np.empty(size)
+    n = 0
+    for k in range(count):
+        angle = _TURN * k / count
+        du, dv = math.cos(angle), math.sin(angle)
+        row, col = 0, 0
+        per_row = abs(1.0 / dv) if dv != 0.0 else math.inf
+        per_col = abs(1.0 / du) if du != 0.0 else math.inf
+        next_row, next_col = 0.5 * per_row, 0.5 * per_col
+        entry = 0.0
+        while entry <= reach:
+            leave = min(next_row, next_col)
+            rows[n], cols[n], lengths[n] = row, col, leave - entry
+            n += 1
+            entry = leave
+            if next_col <= next_row:
+                col += 1 if du > 0.0 else -1
+                next_col += per_col
+            else:
+                row += 1 if dv > 0.0 else -1
+                next_row += per_row
+        begin[k + 1] = n
+    return begin, rows[:n].copy(), cols[:n].copy(), lengths[:n].copy()
+
+
+@njit(cache=True)
+def _look(cells, eyes, depth, rays, ray_rows, ray_cols, lengths):  # type: ignore[no-untyped-def]  # numba kernel
     """Unknown cells in view of each of (N, 2) cells, as far as ``depth`` cells into the unknown.
 
     Also the tiles of 4 × 4 cells that its rays touch: nothing outside of these has a say.
-
-    One ray to each cell's width on the circle of reach, after Amanatides & Woo, 1987.
     """
     rows, cols = cells.shape
-    rays = int(_TURN * reach)
     seen = np.full(rows * cols, -1, dtype=np.int32)
-    begin, begin_tiles = (
-        np.zeros(eyes.shape[0] + 1, dtype=np.int64),
-        np.zeros(eyes.shape[0] + 1, dtype=np.int64),
-    )
+    begin = np.zeros(eyes.shape[0] + 1, dtype=np.int64)
+    begin_tiles = begin.copy()
     out, tiles = np.empty(4096, dtype=np.int32), np.empty(4096, dtype=np.int32)
     wide = cols // _TILE + 1
     touched = np.full((rows // _TILE + 1) * wide, -1, dtype=np.int32)
     count, count_tiles = 0, 0
     for i in range(eyes.shape[0]):
-        for k in range(rays):
-            angle = _TURN * k / rays
-            du, dv = math.cos(angle), math.sin(angle)
-            row, col = eyes[i, 0], eyes[i, 1]
-            step_row, step_col = (1 if dv > 0.0 else -1), (1 if du > 0.0 else -1)
-            per_row = abs(1.0 / dv) if dv != 0.0 else math.inf
-            per_col = abs(1.0 / du) if du != 0.0 else math.inf
-            next_row, next_col = 0.5 * per_row, 0.5 * per_col
-            entry, passed = 0.0, 0.0
-            while entry <= reach:
+        for k in range(rays.size - 1):
+            passed = 0.0
+            for j in range(rays[k], rays[k + 1]):
+                row, col = eyes[i, 0] + ray_rows[j], eyes[i, 1] + ray_cols[j]
                 if not (0 <= row < rows and 0 <= col < cols):
                     break
-                tile = row // _TILE * wide + col // _TILE
+                tile = (row // _TILE) * wide + col // _TILE
                 if touched[tile] != i:
                     touched[tile] = i
                     tiles = _appended(tiles, count_tiles, tile)
                     count_tiles += 1
                 value = cells[row, col]
-                if value == OCCUPIED:
+                if value == FREE:
+                    continue
+                if value == OCCUPIED or passed >= depth:
                     break
-                leave = min(next_row, next_col)
-                if value == UNKNOWN:
-                    if passed >= depth:
-                        break
-                    passed += leave - entry
-                    flat = row * cols + col
-                    if seen[flat] != i:
-                        seen[flat] = i
-                        out = _appended(out, count, flat)
-                        count += 1
-                entry = leave
-                if next_col <= next_row:
-                    col += step_col
-                    next_col += per_col
-                else:
-                    row += step_row
-                    next_row += per_row
+                passed += lengths[j]
+                flat = row * cols + col
+                if seen[flat] != i:
+                    seen[flat] = i
+                    out = _appended(out, count, flat)
+                    count += 1
         begin[i + 1], begin_tiles[i + 1] = count, count_tiles
     return begin, out[:count].copy(), begin_tiles, tiles[:count_tiles].copy()
 
@@ -174,6 +191,7 @@ class Outlooks:
         self._cells: NDArray[np.int8] = np.empty((0, 0), dtype=np.int8)
         self._first = (0, 0)
         self._known: dict[tuple[int, int], _Known] = {}
+        self._rays: dict[float, tuple[NDArray[np.generic], ...]] = {}
 
     def look(
         self,
@@ -201,8 +219,10 @@ class Outlooks:
         useful = near[places[:, 0] // 8, places[:, 1] // 8]
         fresh = [i for i, key in enumerate(keys) if useful[i] and key not in self._known]
         if fresh:
+            if reach_cells not in self._rays:
+                self._rays = {reach_cells: _rays(reach_cells)}
             begin, seen, begin_tiles, tiles = _look(
-                read_only(cells), read_only(places[fresh]), reach_cells, depth_cells
+                read_only(cells), read_only(places[fresh]), depth_cells, *self._rays[reach_cells]
             )
             for k, i in enumerate(fresh):
                 self._known[keys[i]] = _Known(

@@ -21,8 +21,9 @@ LOOK_M = 0.1
 GO_M = 0.2
 """Side of the blocks that ways are measured over."""
 _SPARSE_M = 0.6
+_DENSE_M = 0.3
 _SAME_M = 0.3
-_NEAR_M = 2.0
+_NEAR_M = 1.5
 _CHUNK = 64
 
 
@@ -69,7 +70,7 @@ class ViewPlaces:
             clearance_m: (rows, cols) float32, as from :func:`clearance_field`.
             travel_m: (rows, cols) float32, as from :func:`travel_field`.
             radius_m: r that ``travel_m`` was made with.
-            is_dense: squares of 0.2 m instead of 0.6 m.
+            is_dense: squares of 0.3 m instead of 0.6 m.
             more: (N, 2) metres, further places; those out of reach are left out.
             tried: (M, 2) metres; nothing within 0.3 m of these is a place.
         """
@@ -77,7 +78,7 @@ class ViewPlaces:
         self._is_dense = is_dense
         self._radius_m = radius_m
         self._room = np.where(np.isfinite(travel_m), clearance_m, np.float32(0.0))
-        best = Blocks.over(grid, GO_M if is_dense else _SPARSE_M).best_cells(self._room)
+        best = Blocks.over(grid, _DENSE_M if is_dense else _SPARSE_M).best_cells(self._room)
         cells = best[best[..., 0] >= 0]
         if more is not None and len(more):
             extra = grid.cells_of(more)

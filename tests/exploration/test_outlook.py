@@ -15,7 +15,7 @@ from tests.exploration.grids import random_cells
 def seen_slowly(cells: np.ndarray, row: int, col: int, reach: float, depth: float) -> set[int]:
     """All crossings of a ray with the lines between cells, sorted; the cell at the middle of each piece."""
     found = set()
-    rays = int(2.0 * math.pi * reach)
+    rays = int(0.6 * 2.0 * math.pi * reach)
     for k in range(rays):
         du, dv = math.cos(2.0 * math.pi * k / rays), math.sin(2.0 * math.pi * k / rays)
         lines = np.arange(0.5, reach + 1.0)
