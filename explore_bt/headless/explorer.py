@@ -64,7 +64,8 @@ class Explorer:
         """What to do next.
 
         Args:
-            grid: the newest map, of any resolution; it may have grown since.
+            grid: the newest map, of any resolution; it may have grown since. Its cells are frozen from then
+                on: give a copy of an array that is still being written.
             pose: where the robot is, ``map`` frame; or a pose for each of several robots by name.
 
         Returns:

@@ -16,19 +16,19 @@ _ARRIVED_M = 0.15
 _ARRIVED_RAD = math.radians(10.0)
 _STILL_M = 0.02
 _STILL_RAD = math.radians(2.0)
-_PATIENCE = 100
+_PATIENCE = 10
 
 
 class GridPilot:
     """Implements ``Pilot`` by the poses that the caller reports.
 
-    A path has arrived within 0.15 m of its end (a turn in place, within 10°); it is stuck when a hundred
-    reports in a row have brought no motion.
+    A path has arrived within 0.15 m of its end (a turn in place, within 10°); it is stuck when ten reports in
+    a row have brought no motion, which is taken for a place too tight.
     """
 
     blocked_s = 0.0
     gate_reason = ""
-    is_blocked_by_obstacle = False
+    is_blocked_by_obstacle = True
 
     def __init__(self) -> None:
         self.path: Path | None = None

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from explore_bt.exploration import scan_of_grid
 from explore_bt.headless.grid_pilot import GridPilot
 from explore_bt.interfaces import MapView, Planner
+from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.types import Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
 __all__ = ["GridRobot"]
 
 _TRACK_SPACING_M = 0.1
+_GRAZE_M = 0.005
+"""Between the centres of cells a path may come nearer to a corner than the cells' clearances say."""
 
 
 class GridRobot:
@@ -31,7 +36,9 @@ class GridRobot:
         self._planner = planner
         self._reports = 0
         self._pose = self.home = Pose2.identity()
-        self._view: MapView
+        self._grid: OccupancyGrid
+        self._view: MapView | None = None
+        self._tight = TightPlaces()
         self._scan: Scan2D | None = None
         self._track: list[Pose2] = []
 
@@ -41,10 +48,10 @@ class GridRobot:
             self.home = pose
         else:
             self.distance_m += pose.distance_to(self._pose)
+        if self._reports == 0 or grid.cells is not self._grid.cells:
+            self._grid = replace(grid, revision=self._reports)
         self._reports += 1
         self._pose = pose
-        if self._reports == 1 or grid is not self._view.grid:
-            self._view = MapView(grid)
         self._scan = None
         self.pilot.report(pose)
         if not self._track or pose.distance_to(self._track[-1]) >= _TRACK_SPACING_M:
@@ -64,22 +71,28 @@ class GridRobot:
         return Trajectory(np.arange(float(len(poses))), poses)
 
     def view(self) -> MapView:
-        """The map that was reported."""
+        """The map that was reported, with the places that proved too tight closed."""
+        grid = self._tight.mark(self._grid)
+        if self._view is None or grid is not self._view.grid:
+            self._view = MapView(grid)
         return self._view
 
     def scan(self) -> Scan2D | None:
         """What a lidar would see in the map; unknown cells return like walls."""
         if self._scan is None:
-            self._scan = scan_of_grid(self._view.grid, self._pose, self.lidar_range_m, stamp_s=self.now_s())
+            self._scan = scan_of_grid(self._grid, self._pose, self.lidar_range_m, stamp_s=self.now_s())
         return self._scan
 
     def plan(self, goal: Pose2) -> Path:
         """A path from the pose that was reported; raises a ``PlanningFailure``."""
-        return self._planner.plan(self._view.grid, self._pose, goal, self.footprint_radius_m)
+        return self._planner.plan(self.view().grid, self._pose, goal, self.footprint_radius_m + _GRAZE_M)
 
     def avoid(self, position: tuple[float, float]) -> None:
-        """Nothing proves too tight for a robot that is not there."""
+        """Close a place where the caller got no farther."""
+        self._tight.add(position)
 
     def forget_avoided(self) -> int:
-        """There are none."""
-        return 0
+        """Open all such places again; how many there were."""
+        count = len(self._tight)
+        self._tight.forget()
+        return count
