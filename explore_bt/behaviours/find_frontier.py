@@ -76,7 +76,7 @@ class FindFrontier(Leaf):
     def _travel_m(self, xy: tuple[float, float]) -> NDArray[np.float32]:
         view = self.robot.view()
         at = np.array([view.grid.cell_of(*xy)])
-        radius_m = self.robot.footprint_radius_m
+        radius_m = self.robot.footprint_radius_m + max(self.robot.least_margin_m, 0.0)
         return travel_field(view.clearance_m, at, radius_m, view.grid.resolution_m)
 
     def _reachable(self, travel_m: NDArray[np.float32]) -> list[tuple[tuple[float, float], Frontier]]:

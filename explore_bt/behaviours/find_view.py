@@ -32,7 +32,6 @@ from explore_bt.units import Area, Length
 __all__ = ["FindView"]
 
 _HERE_M = 0.15
-_SQUEEZE_M = 0.03
 _MARGIN_M = 0.02
 _TRIES = 20
 _SCRAP_M2 = 0.5
@@ -102,7 +101,9 @@ class FindView(Leaf):
 
     def update(self) -> Status:
         """The best of the thinned places; where those show nothing of all places, at last of tight ones."""
-        for margin_m, is_dense in ((_MARGIN_M, False), (_MARGIN_M, True), (0.0, True), (-_SQUEEZE_M, True)):
+        least_m = self.robot.least_margin_m
+        passes = ((_MARGIN_M, False), (_MARGIN_M, True), (max(least_m, 0.0), True), (least_m, True))
+        for margin_m, is_dense in dict.fromkeys(passes):
             for _ in range(_TRIES):
                 chosen = self._choose(margin_m, is_dense)
                 if self._is_too_little(chosen):

@@ -53,29 +53,37 @@ def what_remains(
     ]
     if not frontiers:
         return ()
+    around = round(_AROUND_M / grid.resolution_m)
     passage_m = passage_field(clearance_m, travel_m, radius_m)
-    behind_m = np.where(clearance_m >= radius_m, passage_m, np.float32(0.0))  # in front it tapers off
-    passages = (passage_m, behind_m)
-    found = ((frontier, _why(grid, frontier, travel_m, passages, radius_m)) for frontier in frontiers)
+    room_m = np.where(clearance_m >= radius_m, passage_m, np.float32(0.0))
+    found = (
+        (frontier, _why(frontier, travel_m, passage_m, room_m, radius_m, around)) for frontier in frontiers
+    )
     return tuple((frontier.centroid, why) for frontier, why in found if why)
 
 
 def _why(
-    grid: OccupancyGrid,
     frontier: Frontier,
     travel_m: NDArray[np.float32],
-    passages_m: tuple[NDArray[np.float32], NDArray[np.float32]],
+    passage_m: NDArray[np.float32],
+    room_m: NDArray[np.float32],
     radius_m: float,
+    around: int,
 ) -> str:
-    around = round(_AROUND_M / grid.resolution_m)
-    low = np.maximum(frontier.cells.min(axis=0) - around, 0)
-    high = frontier.cells.max(axis=0) + around + 1
-    window = (slice(low[0], high[0]), slice(low[1], high[1]))
-    if not (passages_m[0][tuple(frontier.cells.T)] > 0.0).any():
+    """The reason is in the way to the nearest place beside the frontier with room for the robot."""
+    if not (passage_m[tuple(frontier.cells.T)] > 0.0).any():
         return "no known floor leads there: behind glass, or seen through a gap"
-    if np.isfinite(travel_m[window]).any():
-        return ""
-    widest_m = float(passages_m[1][window].max()) or float(passages_m[0][window].max())
+    row, col = frontier.middle_cell
+    low = (max(0, row - around), max(0, col - around))
+    window = (slice(low[0], row + around + 1), slice(low[1], col + around + 1))
+    places = np.argwhere(room_m[window] > 0.0) + low
+    if len(places) == 0:
+        widest_m = float(passage_m[window].max())
+    else:
+        nearest = tuple(places[np.argmin(((places - (row, col)) ** 2).sum(axis=1))])
+        widest_m = float(room_m[nearest])
+        if np.isfinite(travel_m[nearest]):
+            return ""
     missing_cm = math.ceil((radius_m - widest_m) * 100 - 1e-6)
     return f"too narrow by {missing_cm} cm: passage clearance {widest_m:.2f} m, needs {radius_m:.2f} m"
 

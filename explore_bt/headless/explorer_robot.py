@@ -10,7 +10,7 @@ from explore_bt.types import OccupancyGrid, Path, Pose2, Waypoint
 
 __all__ = ["ExplorerRobot"]
 
-_MOST_TICKS = 50
+_MOST_TICKS = 1000
 
 
 class ExplorerRobot:

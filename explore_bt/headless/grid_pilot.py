@@ -16,14 +16,14 @@ _ARRIVED_M = 0.15
 _ARRIVED_RAD = math.radians(10.0)
 _STILL_M = 0.02
 _STILL_RAD = math.radians(2.0)
-_PATIENCE = 10
+_PATIENCE = 4
 
 
 class GridPilot:
     """Implements ``Pilot`` by the poses that the caller reports.
 
-    A path has arrived within 0.15 m of its end (a turn in place, within 10°); it is stuck when ten reports in
-    a row have brought no motion, which is taken for a place too tight.
+    A path has arrived within 0.15 m of its end (a turn in place, within 10°); it is stuck when four reports
+    in a row have brought no motion, which is taken for a place too tight.
     """
 
     blocked_s = 0.0
@@ -51,6 +51,13 @@ class GridPilot:
             pose.distance_to(before) > _STILL_M or abs(wrap_angle(pose.yaw_rad - before.yaw_rad)) > _STILL_RAD
         )
         self._still = 0 if moved else self._still + 1
+
+    def passed(self, before: Pose2, now: Pose2) -> NDArray[np.float64]:
+        """(N, 3) poses of the path between two places beside it."""
+        if self.path is None or len(self.path.poses) == 1:
+            return np.empty((0, 3))
+        first, last = (_next_pose(self.path.poses[:, :2], np.array(pose.xy)) for pose in (before, now))
+        return self.path.poses[first:last]
 
     @property
     def path_ahead(self) -> Path | None:

@@ -26,6 +26,7 @@ class GridRobot:
     """
 
     stop_requested = False
+    least_margin_m = _GRAZE_M
 
     def __init__(self, name: str, planner: Planner, footprint_radius_m: float, lidar_range_m: float) -> None:
         self.name = name
@@ -48,6 +49,8 @@ class GridRobot:
             self.home = pose
         else:
             self.distance_m += pose.distance_to(self._pose)
+            passed = self.pilot.passed(self._pose, pose)
+            self._track += [Pose2(x, y, yaw_rad) for x, y, yaw_rad in passed.tolist()]
         if self._reports == 0 or grid.cells is not self._grid.cells:
             self._grid = replace(grid, revision=self._reports)
         self._reports += 1
@@ -66,7 +69,7 @@ class GridRobot:
         return Estimate(self.now_s(), self._pose)
 
     def trajectory(self) -> Trajectory:
-        """The poses reported, a tenth of a metre apart."""
+        """The poses reported, and those of the path between them."""
         poses = np.array([(pose.x, pose.y, pose.yaw_rad) for pose in (*self._track, self._pose)])
         return Trajectory(np.arange(float(len(poses))), poses)
 

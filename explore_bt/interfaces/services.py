@@ -65,6 +65,10 @@ class RobotServices(Protocol):
         """Radius of the circular footprint."""
 
     @property
+    def least_margin_m(self) -> float:
+        """What plans keep beyond the footprint; below 0 where something finer than the map decides."""
+
+    @property
     def lidar_range_m(self) -> float:
         """How far the lidar sees."""
 

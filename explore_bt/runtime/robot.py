@@ -109,6 +109,11 @@ class Robot:
         return self.driver.footprint_radius_m
 
     @property
+    def least_margin_m(self) -> float:
+        """The first squeeze that ``plan`` allows itself: the safety gate decides on the spot."""
+        return -SQUEEZES_M[0]
+
+    @property
     def lidar_range_m(self) -> float:
         """How far the lidar sees."""
         return self._scan.range_max_m if self._scan else DEFAULT_LIDAR_RANGE_M

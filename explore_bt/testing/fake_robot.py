@@ -42,6 +42,7 @@ class FakeRobot:
     def __init__(self, grid: OccupancyGrid, pose: Pose2 = Pose2(0.0, 0.0, 0.0)) -> None:
         self.name = "robot"
         self.footprint_radius_m = 0.25
+        self.least_margin_m = -0.03
         self.lidar_range_m = 5.0
         self.home = pose
         self.pilot = FakePilot()

@@ -7,8 +7,8 @@ from explore_bt import Explorer
 from explore_bt.errors import UserError
 from explore_bt.exploration import clearance_at
 from explore_bt.headless import STRATEGIES
-from explore_bt.types import FREE, OCCUPIED, OccupancyGrid, Pose2
-from tests.headless.drive import explore, share_seen
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
+from tests.headless.drive import explore, look, share_seen
 
 START = Pose2(1.5, 1.5, 0.0)
 
@@ -59,3 +59,53 @@ def test_several_robots_have_a_decision_each() -> None:
     decisions = explorer.decide(truth, {"one": START, "two": Pose2(6.0, 4.5, 0.0)})
     assert set(decisions) == {"one", "two"}
     assert all(decision.done for decision in decisions.values())
+
+
+def two_rooms(gap_cells: int) -> OccupancyGrid:
+    """7 × 4 m at 5 cm: two rooms with a gap between them."""
+    cells = np.full((80, 140), FREE, dtype=np.int8)
+    cells[[0, -1], :] = cells[:, [0, -1]] = cells[:, 70] = OCCUPIED
+    cells[40 : 40 + gap_cells, 70] = FREE
+    return OccupancyGrid(cells, 0.05, (0.0, 0.0))
+
+
+@pytest.mark.parametrize("strategy", ["complete", "nearest_frontier", "tour", "information_gain"])
+def test_a_room_behind_a_gap_too_narrow_is_named_at_the_end(strategy: str) -> None:
+    *_, (grid, _, decision) = explore(Explorer(strategy, robot_radius_m=0.2), two_rooms(7), START)
+    assert decision.done
+    assert grid.unknown[:, 80:].any()
+    assert any("too narrow by 3 cm" in sentence for sentence in decision.remaining)
+
+
+def test_a_gap_of_two_radii_and_ten_centimetres_is_passed() -> None:
+    *_, (grid, _, decision) = explore(Explorer(robot_radius_m=0.2), two_rooms(10), START)
+    assert decision.done
+    assert share_seen(two_rooms(10), grid) > 0.99
+
+
+def test_decisions_are_the_same_on_cells_of_five_and_of_ten_centimetres() -> None:
+    explorers = [Explorer(robot_radius_m=0.2) for _ in range(2)]
+    apart = []
+    for grid, pose, coarse in explore(explorers[0], flat(), START):
+        cells = np.kron(grid.cells, np.ones((2, 2), dtype=np.int8))
+        fine = explorers[1].decide(OccupancyGrid(cells, 0.05, grid.origin_xy), pose)
+        assert coarse.done == fine.done
+        if coarse.goal is not None and fine.goal is not None:
+            apart.append(coarse.goal.distance_to(fine.goal))
+    assert max(apart) < 0.3
+
+
+def test_a_robot_that_gets_no_farther_is_sent_another_way_and_ends() -> None:
+    explorer, truth = Explorer(robot_radius_m=0.2), flat()
+    cells = np.full(truth.shape, UNKNOWN, dtype=np.int8)
+    look(truth, cells, START)
+    grid = OccupancyGrid(cells, truth.resolution_m, truth.origin_xy)
+    goals = set()
+    for _ in range(2000):
+        decision = explorer.decide(grid, START)
+        if decision.done:
+            break
+        assert decision.goal is not None
+        goals.add(decision.goal.xy)
+    assert decision.done
+    assert len(goals) > 1
