@@ -91,3 +91,16 @@ def test_a_drive_that_is_cut_off_holds_the_robot() -> None:
     leaf = drive(robot)
     leaf.stop(Status.INVALID)
     assert robot.pilot.holds == 1
+
+
+def test_a_drive_that_is_to_look_again_ends_after_so_much_way() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot, look_again=1.0)
+    robot.distance_m = 0.9
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING
+    robot.distance_m, robot.pose = 1.0, Pose2(1.0, 0.0, 0.0)
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+    assert leaf.blackboard["reached"].pose == robot.pose
+    assert robot.pilot.holds == 0

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from explore_bt.mission import MissionError, load_mission
+from explore_bt.mission import MissionError, load_mission, load_tree
 
 TREES = """\
 params:
@@ -139,3 +139,18 @@ def test_what_an_unread_file_would_have_held_is_not_missed_too(folder, catalog) 
     assert [fault.message for fault in caught.value.faults] == [
         "trees/gone.yaml cannot be read: no such file or directory"
     ]
+
+
+def test_a_parameter_picks_the_tree(folder, catalog) -> None:
+    text = (folder / "m.yaml").read_text().replace("tree: explore\n", "tree: $params.which\n")
+    declared = "  which: {type: choice, choices: [explore, spare], default: spare}\n  stride:"
+    (folder / "m.yaml").write_text(text.replace("  stride:", declared))
+    assert load_with(folder, catalog, TREES).robots[0].tree.type == "home"
+
+
+def test_a_file_of_trees_can_be_read_by_itself(folder, catalog) -> None:
+    path = folder / "trees" / "more.yaml"
+    path.write_text(TREES)
+    assert load_tree(path, ("missing", "spare"), catalog).type == "home"
+    with pytest.raises(MissionError, match='there is no tree "missing"'):
+        load_tree(path, ("missing",), catalog)

@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+import numpy as np
+
+from explore_bt.behaviours import FindFrontier, FindView
+from explore_bt.testing.fake_robot import FakeRobot
+from explore_bt.tree import Blackboard, Leaf, Status
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
+
+HERE = Pose2(3.0, 2.0, 0.0)
+
+
+def hall(open_left: bool = True, open_right: bool = True) -> OccupancyGrid:
+    """A known hall of 6 × 4 m whose ends are walls, or unknown from there on."""
+    cells = np.full((42, 100), UNKNOWN, dtype=np.int8)
+    cells[1:41, 20:80] = FREE
+    cells[[0, 41], :] = OCCUPIED
+    cells[:, 19] = UNKNOWN if open_left else OCCUPIED
+    cells[:, 80] = UNKNOWN if open_right else OCCUPIED
+    return OccupancyGrid(cells, 0.1, (-2.0, 0.0))
+
+
+def ticked(cls: type[Leaf], grid: OccupancyGrid, **bindings: object) -> Leaf:
+    leaf = cls("find", FakeRobot(grid, HERE), Blackboard(), bindings)
+    leaf.tick_once()
+    return leaf
+
+
+def test_a_view_is_a_place_with_room_on_the_side_that_is_open() -> None:
+    leaf = ticked(FindView, hall(open_left=False))
+    assert leaf.status is Status.SUCCESS
+    goal = leaf.blackboard["goal"]
+    assert goal.position[0] > HERE.x
+    assert goal.expected_gain_m2 > 1.0
+
+
+def test_of_two_sides_alike_the_one_ahead_is_taken() -> None:
+    assert ticked(FindView, hall()).blackboard["goal"].position[0] > HERE.x
+
+
+def test_where_nothing_is_left_the_reason_is_told() -> None:
+    leaf = ticked(FindView, hall(open_left=False, open_right=False))
+    assert leaf.status is Status.FAILURE
+    assert leaf.blackboard["reason"] == "no reachable place shows 0.10 m² of new area or more"
+    assert leaf.blackboard["left_open"] == ()
+
+
+def test_scraps_are_left_where_the_mission_allows_it_and_named() -> None:
+    cells = hall(open_left=False, open_right=False).cells.copy()
+    cells[20:23, 79:82] = UNKNOWN
+    grid = OccupancyGrid(cells, 0.1, (-2.0, 0.0))
+    assert ticked(FindView, grid, min_gain=0.05).status is Status.SUCCESS
+    leaf = ticked(FindView, grid, min_gain=0.05, leave=0.05)
+    assert leaf.status is Status.FAILURE
+    assert "too little to be worth the way" in leaf.blackboard["left_open"][0]
+
+
+def test_the_nearest_frontier_is_driven_up_to() -> None:
+    grid = hall()
+    leaf = FindFrontier("find", FakeRobot(grid, Pose2(1.5, 2.0, 0.0)), Blackboard(), {})
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+    assert leaf.blackboard["goal"].position[0] < 0.5
