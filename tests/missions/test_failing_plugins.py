@@ -181,7 +181,7 @@ def test_a_failed_way_home_is_named_beside_the_reason_to_go_there(tmp_path: Path
     result, _ = run_with(broken, tmp_path, "skeleton")
     assert result.outcome is Outcome.FAILED
     explored, home = result.reason.split("; ")
-    assert explored.startswith("no reachable frontier")
+    assert explored.startswith("no reachable place shows")
     assert home == "drive_to: no path: planner broken: RuntimeError('cable pulled')"
 
 
