@@ -22,7 +22,7 @@ def test_in_a_box_every_beam_has_the_length_to_the_wall_it_meets(x: float, y: fl
     heading = scan.angles_rad + yaw
     wall_x = np.where(np.cos(heading) > 0.0, 5.9, -0.9)
     wall_y = np.where(np.sin(heading) > 0.0, 6.9, 2.1)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         across, up = (wall_x - x) / np.cos(heading), (wall_y - y) / np.sin(heading)
     expected = np.minimum(np.abs(across), np.abs(up))
     assert np.allclose(scan.ranges_m, np.maximum(expected, 0.01), atol=1e-3)
