@@ -47,10 +47,9 @@ class Explorer:
         """
         require_positive(robot_radius_m=robot_radius_m, lidar_range_m=lidar_range_m)
         self._radius_m, self._range_m = robot_radius_m, lidar_range_m
-        registry = load_plugins().registry
-        self._tree = read_strategy(strategy, registry)
-        self._planner = make_planner(registry)
-        self._planner.setup(RobotContext(footprint_radius_m=robot_radius_m))
+        self._registry = load_plugins().registry
+        self._tree = read_strategy(strategy, self._registry)
+        make_planner(self._registry).setup(RobotContext(footprint_radius_m=robot_radius_m))
         warm_up()
         self._robots: dict[str, ExplorerRobot] = {}
 
@@ -77,6 +76,8 @@ class Explorer:
 
     def _robot(self, name: str) -> ExplorerRobot:
         if name not in self._robots:
-            body = GridRobot(name, self._planner, self._radius_m, self._range_m)
+            planner = make_planner(self._registry)  # one each: it remembers its last route
+            planner.setup(RobotContext(footprint_radius_m=self._radius_m))
+            body = GridRobot(name, planner, self._radius_m, self._range_m)
             self._robots[name] = ExplorerRobot(body, self._tree)
         return self._robots[name]
