@@ -3,8 +3,8 @@
 python benchmarks/lidar3d.py [--hours H] [--seed S] [--plot FILE.png] [OPTION=VALUE ...]
 
 Range 5 m with 2 cm noise, IMU at 250 Hz, turns at 1.5 rad/s, pitch ±9°, roll ±2°. Without --hours one tour
-through all rooms; with it, tours until that much time has passed, memory noted after each; Ctrl-C ends it after
-the tour under way. Times are CPU time of the process, for the cloud and the IMU samples before it, so that a
+through all rooms; with it, tours until that much time has passed, memory noted after each; Ctrl-C makes the
+tour under way the last. Times are CPU time of the process, for the cloud and the IMU samples before it: a
 shared machine does not count.
 """
 

@@ -30,6 +30,9 @@ class ReplayOptions(PluginOptions):
     robot: str | None = Field(None, description="whose scans of a recording.mcap; none: the first robot's")
     scan_topic: str | None = Field(None, description="the lidar's topic in a bag; none: the only one")
 
+    colour_topic: str | None = Field(None, description="a bag's camera; none: the only one with depth")
+    depth_topic: str | None = Field(None, description="its depth, registered; none: the only one that fits")
+
     @property
     def limits(self) -> MotionLimits:
         """What is known of the recorded body; the rest is nobody's limit."""
