@@ -19,7 +19,9 @@ class ReplayOptions(PluginOptions):
     log: FileOrFolderPath = Field(
         description="CARMEN log (also .gz, .bz2), recording.mcap, ROS 1 bag, ROS 2 bag folder"
     )
-    radius: Length = Field(0.25, ge=0.05, le=2.0, description="radius of the circular footprint")
+    radius: Length | None = Field(
+        None, ge=0.05, le=2.0, description="of the circular footprint; none: as recorded, else 25 cm"
+    )
     speed: Speed = Field(2.0, ge=0.01, le=20.0, description="the recorded robot was never faster")
     turn_rate: AngularRate = Field(3.0, ge=0.01, le=20.0, description="it never turned faster")
     range_max: Length | None = Field(
