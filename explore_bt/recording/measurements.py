@@ -10,6 +10,8 @@ import base64
 import json
 import math
 from collections.abc import Sequence
+from functools import lru_cache
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +24,7 @@ __all__ = ["measurements_message"]
 _STEP_M = 5e-4
 _MOST = 65533
 _INVALID, _NOTHING = 65534, 65535
+_LETTERS: dict[type, str] = {Imu: "I", WheelOdometry: "O", Scan2D: "S", PointCloud: "C"}
 _CLOUD_STEP_M = 1e-3
 _EVEN = 1e-9
 
@@ -32,26 +35,19 @@ def measurements_message(time_ns: int, measurements: Sequence[Measurement]) -> s
     Ranges are rounded to 0.5 mm and points to 1 mm (coarser where a lidar sees farther than 32 m), gyroscope
     and accelerometer to single precision; stamps, odometry and mountings are exact.
     """
-    imus, odometries, scans, clouds, order = [], [], [], [], []
-    for each in measurements:
-        if isinstance(each, Imu):
-            imus.append((each.stamp_s, *each.angular_velocity_rps, *each.linear_acceleration_mps2))
-            order.append("I")
-        elif isinstance(each, WheelOdometry):
-            pose = each.T_odom_base
-            odometries.append((each.stamp_s, pose.x, pose.y, pose.yaw_rad))
-            order.append("O")
-        elif isinstance(each, Scan2D):
-            scans.append(each)
-            order.append("S")
-        elif isinstance(each, PointCloud):
-            clouds.append(each)
-            order.append("C")
-    samples = np.array(imus, dtype="<f8").reshape(-1, 7)
+    imus = [each for each in measurements if isinstance(each, Imu)]
+    odometries = [each for each in measurements if isinstance(each, WheelOdometry)]
+    scans = [each for each in measurements if isinstance(each, Scan2D)]
+    clouds = [each for each in measurements if isinstance(each, PointCloud)]
+    order = [_LETTERS[type(each)] for each in measurements if type(each) in _LETTERS]
+    readings = chain.from_iterable(
+        vector for imu in imus for vector in (imu.angular_velocity_rps, imu.linear_acceleration_mps2)
+    )
+    poses = [(each.T_odom_base, each.stamp_s) for each in odometries]
     arrays = {
-        "imu_stamps": samples[:, 0],
-        "imu": samples[:, 1:].astype("<f4"),
-        "odometry": np.array(odometries, dtype="<f8"),
+        "imu_stamps": np.array([imu.stamp_s for imu in imus], dtype="<f8"),
+        "imu": np.fromiter(readings, dtype="<f4", count=6 * len(imus)),
+        "odometry": np.array([(stamp_s, p.x, p.y, p.yaw_rad) for p, stamp_s in poses], dtype="<f8"),
         "scan_stamps": np.array([scan.stamp_s for scan in scans], dtype="<f8"),
     }
     # not by the encoder: it would look for quotes in every byte of them
@@ -104,8 +100,8 @@ def _lidar(scan: Scan2D) -> dict[str, object]:
         "mounting": [mounting.x, mounting.y, mounting.yaw_rad],
         "range_min": _figure(scan.range_min_m),
         "range_max": _figure(scan.range_max_m),
-        "angles": _series(scan.angles_rad),
-        "times": _series(scan.times_s),
+        "angles": _series(scan.angles_rad.tobytes()),
+        "times": _series(scan.times_s.tobytes()),
     }
 
 
@@ -125,8 +121,10 @@ def _cloud(cloud: PointCloud) -> dict[str, object]:
     }
 
 
-def _series(values: NDArray[np.float64]) -> object:
-    """First, last and count of evenly spaced values, else their bytes."""
+@lru_cache(maxsize=16)
+def _series(raw: bytes) -> object:
+    """First, last and count of evenly spaced float64 values, else their bytes."""
+    values = np.frombuffer(raw)
     if len(values) and np.isfinite(values).all():
         even = np.linspace(values[0], values[-1], len(values))
         if np.abs(even - values).max() <= _EVEN:

@@ -123,7 +123,10 @@ class RobotTrack:
         changed = [
             (index, node)
             for index, node in enumerate(nodes)
-            if key_frame or (node is not self._nodes[index] and node != self._nodes[index])
+            if key_frame
+            # not ``node !=``: a dataclass makes two tuples to compare, for every node at every tick
+            or node.status != self._nodes[index].status
+            or node.message != self._nodes[index].message
         ]
         self._nodes = nodes
         if key_frame:
