@@ -3,18 +3,21 @@
 python benchmarks/lidar3d.py [--hours H] [--seed S] [--plot FILE.png] [OPTION=VALUE ...]
 
 Range 5 m with 2 cm noise, IMU at 250 Hz, turns at 1.5 rad/s, pitch ±9°, roll ±2°. Without --hours one tour
-through all rooms; with it, tours until that much time has passed, memory noted after each. Times are CPU time
-of the process, for the cloud and the IMU samples before it, so that a shared machine does not count.
+through all rooms; with it, tours until that much time has passed, memory noted after each; Ctrl-C makes the
+tour under way the last. Times are CPU time of the process, for the cloud and the IMU samples before it: a
+shared machine does not count.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import signal
 import time
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 from explore_bt_drivers.world import World, load_world
@@ -51,8 +54,9 @@ def resident_mb() -> float:
 
 def run(slam: KissGtsam, robot: BalancingRobot, hours: float) -> Notes:
     """Stand a second, then tours."""
-    notes, spent = Notes(), 0.0
-    while not notes.memory or robot.time_s < 3600.0 * hours:
+    notes, spent, enough = Notes(), 0.0, Event()
+    signal.signal(signal.SIGINT, lambda *_: enough.set())
+    while not notes.memory or (robot.time_s < 3600.0 * hours and not enough.is_set()):
         for measurement in chain(robot.drive(0.0, 0.0, 1.0), tour(robot)):
             begun = time.process_time()
             slam.update(measurement)

@@ -61,7 +61,8 @@ def run_job(job: MappingJob, folder: Path) -> MappingResult:
         try:
             job.driver.setup(RobotContext())
             limits, radius_m = job.driver.limits, job.driver.footprint_radius_m
-            job.slam.setup(RobotContext(footprint_radius_m=radius_m, limits=limits))
+            start = job.driver.start
+            job.slam.setup(RobotContext(start=start, footprint_radius_m=radius_m, limits=limits))
             with _progress(job) as on_scan:
                 mapping = map_log(job.driver, job.slam, odometry=job.odometry, stop=stop, on_scan=on_scan)
             result = _result(job, mapping, stop, began_s)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 
-from explore_bt.types import Estimate, MotionState, OccupancyGrid, Path, Pose2, Scan2D, Score
+from explore_bt.types import Estimate, Measurement, MotionState, OccupancyGrid, Path, Pose2, Scan2D, Score
 
 __all__ = ["Event", "NodeInfo", "NodeState", "RobotSnapshot", "RunInfo", "TickSnapshot"]
 
@@ -61,6 +61,7 @@ class RobotSnapshot:
         blackboard: key -> value after this tick.
         gate_reason: empty while commands pass; else why the safety gate brakes.
         true_pose: where the driver knows it.
+        measured: what SLAM was given since the tick before, in this order.
     """
 
     robot: str
@@ -74,6 +75,7 @@ class RobotSnapshot:
     blackboard: Mapping[str, object]
     score: Score
     true_pose: Pose2 | None = None
+    measured: tuple[Measurement, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

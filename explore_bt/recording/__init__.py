@@ -2,6 +2,7 @@
 
 from explore_bt.recording.foxglove import decode_grid
 from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions
+from explore_bt.recording.measurements_reader import decode_measurements
 from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
 from explore_bt.recording.topics import TOPICS, Topic
 from explore_bt.recording.values import to_json
@@ -16,6 +17,7 @@ __all__ = [
     "RecordingError",
     "Topic",
     "decode_grid",
+    "decode_measurements",
     "read_recording",
     "to_json",
 ]

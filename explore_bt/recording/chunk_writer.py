@@ -37,11 +37,15 @@ class ChunkWriter:
                 schemas[schema] = self._writer.register_schema(schema, "jsonschema", schema_text(schema))
             self._channels[topic] = self._writer.register_channel(topic, "json", schemas[schema])
 
+    def is_due(self, time_ns: int) -> bool:
+        """Whether the next message of that time goes into a chunk of its own."""
+        return self._chunk_begin_ns is not None and time_ns - self._chunk_begin_ns >= self._period_ns
+
     def write(self, topic: str, time_ns: int, text: str) -> None:
         """Add a message; the chunk is closed first if this message is past its time."""
         if self._chunk_begin_ns is None:
             self._chunk_begin_ns = time_ns
-        elif time_ns - self._chunk_begin_ns >= self._period_ns:
+        elif self.is_due(time_ns):
             self.flush()
             self._chunk_begin_ns = time_ns
         channel = self._channels[topic]

@@ -8,7 +8,7 @@ import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import zstandard
 from mcap.exceptions import McapError
@@ -114,9 +114,12 @@ def read_recording(path: Path) -> Recording:
             found = "an empty file" if size == 0 else "not an MCAP file"
             raise RecordingError(f"{path}: {found}; expected a recording.mcap written by explore-bt run")
         file.seek(0)
-        contents = _read_contents(path, StreamReader(file, emit_chunks=True, record_size_limit=size))
+        contents = _read_contents(path, file, size)
     if not contents.chunks:
-        raise RecordingError(f"{path}: cut off before its first second was written; nothing can be recovered")
+        raise RecordingError(
+            f"{path}: cut off after byte {contents.sound_bytes}, before its first second was written; "
+            "nothing can be recovered"
+        )
     return Recording(path, contents.chunks, contents.channels, contents.damage)
 
 
@@ -126,14 +129,15 @@ class _Contents:
 
     chunks: list[Chunk] = field(default_factory=list)
     channels: dict[int, str] = field(default_factory=dict)
-    unsound: int = 0
+    unsound: list[int] = field(default_factory=list)
+    sound_bytes: int = 0
     whole: bool = False
 
     def take(self, chunk: Chunk) -> None:
         try:
             records = breakup_chunk(chunk, validate_crc=True)
         except _BROKEN:
-            self.unsound += 1
+            self.unsound.append(self.sound_bytes)
             return
         self.chunks.append(chunk)
         self.channels |= {record.id: record.topic for record in records if isinstance(record, Channel)}
@@ -141,15 +145,19 @@ class _Contents:
     @property
     def damage(self) -> str:
         end_s = max(chunk.message_end_time for chunk in self.chunks) * 1e-9
-        cut = "" if self.whole else f"cut off: ends at {end_s:.1f} s of mission time"
-        lost = (
-            f"{self.unsound} unsound chunk{'s' if self.unsound > 1 else ''} left out" if self.unsound else ""
+        cut = (
+            ""
+            if self.whole
+            else f"cut off after byte {self.sound_bytes}: ends at {end_s:.1f} s of mission time"
         )
+        places = ", ".join(map(str, self.unsound))
+        lost = f"unsound chunks left out, from byte {places}" if self.unsound else ""
         return "; ".join(part for part in (cut, lost) if part)
 
 
-def _read_contents(path: Path, reader: StreamReader) -> _Contents:
+def _read_contents(path: Path, file: BinaryIO, size: int) -> _Contents:
     contents = _Contents()
+    reader = StreamReader(file, emit_chunks=True, record_size_limit=size)
     try:
         for record in reader.records:
             if isinstance(record, Header) and record.profile != PROFILE:
@@ -161,6 +169,7 @@ def _read_contents(path: Path, reader: StreamReader) -> _Contents:
                 contents.take(record)
             elif isinstance(record, Channel):  # repeated behind the last chunk
                 contents.channels.setdefault(record.id, record.topic)
+            contents.sound_bytes = file.tell()
         contents.whole = True
     except _BROKEN:
         pass  # the end of a cut file: every chunk before it has been kept

@@ -17,8 +17,20 @@ from explore_bt.recording.foxglove import (
     stamp_ns,
     time_json,
 )
+from explore_bt.recording.measurements import measurements_message
 from explore_bt.recording.values import to_json
-from explore_bt.types import Health, OccupancyGrid, Path, Pose2, Scan2D, Waypoint
+from explore_bt.types import (
+    Health,
+    Imu,
+    Measurement,
+    OccupancyGrid,
+    Path,
+    PointCloud,
+    Pose2,
+    Scan2D,
+    Waypoint,
+    WheelOdometry,
+)
 
 __all__ = ["Periods", "RobotTrack"]
 
@@ -57,11 +69,16 @@ class RobotTrack:
     Args:
         robot: its name, the first part of its topics.
         write: takes topic, mission time in ns and the message.
+        clouds: whether 3D lidars are recorded.
     """
 
-    def __init__(self, robot: str, write: Callable[[str, int, str], None], periods: Periods) -> None:
+    def __init__(
+        self, robot: str, write: Callable[[str, int, str], None], periods: Periods, *, clouds: bool
+    ) -> None:
         self._topic = f"/{robot}/"
         self._write = write
+        self._kinds = (Scan2D, Imu, WheelOdometry, *((PointCloud,) if clouds else ()))
+        self._measured: list[Measurement] = []
         self._nodes: tuple[NodeState, ...] = ()
         self._values: dict[str, object] = {}
         self._texts: dict[str, str] = {}
@@ -88,9 +105,17 @@ class RobotTrack:
         self._sensing(time_ns, robot)
         self._plan(time_ns, robot.path)
         self._gate(time_ns, robot.gate_reason)
+        self._measured += [each for each in robot.measured if isinstance(each, self._kinds)]
+
+    def write_measurements(self, time_ns: int) -> None:
+        """Write what was measured since the last time."""
+        if self._measured:
+            self._write(self._topic + "measured", time_ns, measurements_message(time_ns, self._measured))
+            self._measured = []
 
     def close(self, time_ns: int) -> None:
-        """Write the last map if it was held back."""
+        """Write what was held back: the last measurements, the last map."""
+        self.write_measurements(time_ns)
         self._map(time_ns)
 
     def _tree(self, time_ns: int, tick: int, nodes: tuple[NodeState, ...]) -> None:
@@ -98,7 +123,10 @@ class RobotTrack:
         changed = [
             (index, node)
             for index, node in enumerate(nodes)
-            if key_frame or (node is not self._nodes[index] and node != self._nodes[index])
+            if key_frame
+            # not ``node !=``: a dataclass makes two tuples to compare, for every node at every tick
+            or node.status != self._nodes[index].status
+            or node.message != self._nodes[index].message
         ]
         self._nodes = nodes
         if key_frame:

@@ -33,6 +33,24 @@ _POSE = _object(
     position=_object(x=_NUMBER, y=_NUMBER, z=_NUMBER),
     orientation=_object(x=_NUMBER, y=_NUMBER, z=_NUMBER, w=_NUMBER),
 )
+_BYTES: _Schema = {"type": "string", "contentEncoding": "base64"}
+_SERIES: _Schema = {"anyOf": [_BYTES, _array(_NUMBER)]}
+_LIDAR = _object(
+    frame=_TEXT,
+    mounting=_array(_NUMBER),
+    range_min=_MAYBE,
+    range_max=_MAYBE,
+    angles=_SERIES,
+    times=_SERIES,
+)
+_CLOUD = _object(
+    stamp=_NUMBER,
+    frame=_TEXT,
+    mounting=_array(_NUMBER),
+    point_step_m=_NUMBER,
+    points=_BYTES,
+    times=_BYTES,
+)
 _NODE_STATE = _object(id=_INTEGER, status=_TEXT, message=_TEXT)
 _NODE = _object(
     id=_INTEGER, path=_TEXT, name=_TEXT, type=_TEXT, parent={"type": ["integer", "null"]}, place=_TEXT
@@ -62,7 +80,7 @@ _SCHEMAS: Mapping[str, _Schema] = {
         row_stride=_INTEGER,
         cell_stride=_INTEGER,
         fields=_array(_object(name=_TEXT, offset=_INTEGER, type=_INTEGER)),
-        data={"type": "string", "contentEncoding": "base64"},
+        data=_BYTES,
     ),
     "foxglove.Log": _object(
         timestamp=_TIME, level=_INTEGER, message=_TEXT, name=_TEXT, file=_TEXT, line=_INTEGER
@@ -93,6 +111,19 @@ _SCHEMAS: Mapping[str, _Schema] = {
         mean_clearance_m=_MAYBE,
         ate_rmse_m=_MAYBE,
         distance_to_home_m=_NUMBER,
+    ),
+    "explore_bt.Measurements": _object(
+        timestamp=_TIME,
+        order=_TEXT,
+        imu_stamps=_BYTES,
+        imu=_BYTES,
+        odometry=_BYTES,
+        lidars=_array(_LIDAR),
+        scan_lidars=_array(_INTEGER),
+        scan_stamps=_BYTES,
+        range_step_m=_NUMBER,
+        ranges=_BYTES,
+        clouds=_array(_CLOUD),
     ),
     "explore_bt.Result": _ANY,
 }

@@ -35,6 +35,7 @@ ROBOT_TOPICS = (
     Topic("/<robot>/truth", "foxglove.PoseInFrame", "2 Hz, where the driver knows it"),
     Topic("/<robot>/state", "explore_bt.State", "2 Hz, and on change of health"),
     Topic("/<robot>/scan", "foxglove.LaserScan", "at most 2 Hz"),
+    Topic("/<robot>/measured", "explore_bt.Measurements", "all that SLAM was given, once a second"),
     Topic("/<robot>/map", "foxglove.Grid", "on change, at most every 2 s"),
     Topic("/<robot>/path", "foxglove.PosesInFrame", "on change, at most 2 Hz"),
     Topic("/<robot>/waypoint", "foxglove.PoseInFrame", "on change"),

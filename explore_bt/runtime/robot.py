@@ -65,6 +65,7 @@ class Robot:
         self.blackboard = Blackboard()
         self.tree = build_tree(spec.tree, self, self.blackboard)
         self._scan: Scan2D | None = None
+        self._measured: list[Measurement] = []
         self._view: MapView | None = None
         self._planned_on: OccupancyGrid | None = None
         self._tight = TightPlaces()
@@ -257,7 +258,8 @@ class Robot:
     # --- for observers ------------------------------------------------------------------------------
 
     def snapshot(self) -> RobotSnapshot:
-        """What observers are shown after a tick."""
+        """What observers are shown after a tick; what has been measured is shown once."""
+        measured, self._measured = tuple(self._measured), []
         return RobotSnapshot(
             robot=self.name,
             estimate=self.estimate(),
@@ -272,6 +274,7 @@ class Robot:
             blackboard=dict(self.blackboard),
             score=self.scores.score(),
             true_pose=self.scores.true_pose,
+            measured=measured,
         )
 
     def tell(self, level: str, source: str, message: str) -> None:
@@ -285,6 +288,7 @@ class Robot:
             self._scan = measurement
         if self._slam_fault:
             return
+        self._measured.append(measurement)
         try:
             self.slam.update(measurement)
         except Exception as error:  # a SLAM that raises is lost: the gate brakes, the reason is recorded

@@ -2,6 +2,7 @@ import bz2
 import gzip
 import math
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -210,6 +211,7 @@ def test_a_mutated_log_is_read_or_is_a_log_error(tmp_path_factory, mutations, co
         found = []
         told = str(fault)
         assert told.startswith(str(path))
+        assert re.search(r"^:\d+: |byte \d+|an empty file|not one FLASER", told.removeprefix(str(path)))
     for one in found:
         assert math.isfinite(one.stamp_s)
         if isinstance(one, Scan2D):

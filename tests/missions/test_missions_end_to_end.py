@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from explore_bt.cli import app
 from explore_bt.interfaces import PluginOptions, RunInfo, Sink, TickSnapshot
 from explore_bt.maps import read_map
 from explore_bt.plugin import Registry
@@ -186,3 +188,18 @@ def test_a_mission_goes_on_in_yesterdays_map(run: RunMission, tmp_path: Path) ->
     stamps = np.loadtxt(tmp_path / "today/trajectory.tum", ndmin=2)[:, 0]
     assert stamps.max() <= again.mission_time_s
     assert (np.diff(stamps) > 0.0).all()
+
+
+def test_a_recorded_mission_maps_again_to_the_same_trajectory(
+    run: RunMission, registry: Registry, tmp_path: Path
+) -> None:
+    stop = StopFlag()
+    recorder = registry.get("sink", "mcap")
+    run("00_room.yaml", seed=1, stop=stop, sinks=[recorder(recorder.Options()), StopAfter(stop, 20.0)])
+    again = tmp_path / "again"
+    shown = CliRunner().invoke(app, ["slam", str(tmp_path / "run" / "recording.mcap"), "--out", str(again)])
+    assert shown.exit_code == 0, shown.output
+    first, second = (np.loadtxt(folder / "trajectory.tum") for folder in (tmp_path / "run", again))
+    assert len(first) == len(second) > 150
+    np.testing.assert_allclose(second[:, 0], first[:, 0], atol=1e-5)
+    assert np.hypot(*(second - first)[:, 1:3].T).max() < 0.01

@@ -246,5 +246,5 @@ def test_a_killed_process_leaves_all_but_the_last_second(tmp_path):
     done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], cwd=os.getcwd(), check=False)
     assert done.returncode == -signal.SIGKILL
     recording = read_recording(tmp_path / "recording.mcap")
-    assert recording.damage.startswith("cut off: ends at ")
+    assert recording.damage.startswith("cut off after byte ")
     assert 10.9 <= recording.duration_s <= 11.9

@@ -18,6 +18,8 @@ from explore_bt.types import (
     UNKNOWN,
     Estimate,
     Health,
+    Imu,
+    Measurement,
     MotionState,
     OccupancyGrid,
     Outcome,
@@ -28,6 +30,7 @@ from explore_bt.types import (
     Score,
     Twist2,
     Waypoint,
+    WheelOdometry,
 )
 
 RESOLUTION_M = 0.05
@@ -229,7 +232,13 @@ class _Robot:
             blackboard={"goal": self.goal, "visited": self.visited, "left_m": left_m, "path": self.path},
             score=self._score(clearance, pose),
             true_pose=Pose2(*map(float, pose)),
+            measured=self._measured(stamp_s),
         )
+
+    def _measured(self, stamp_s: float) -> tuple[Measurement, ...]:
+        """Ten samples of an IMU, one of the wheels, the scan."""
+        imus = [Imu(stamp_s - 0.01 * k, (0.0, 0.0, 0.1), (0.0, 0.0, 9.81)) for k in range(9, -1, -1)]
+        return (*imus, WheelOdometry(stamp_s, Pose2(self.distance, 0.0, 0.0)), self.scan)
 
     def _choose(self, index: int, end: int) -> None:
         goal = Pose2(*map(float, self.poses[end]))

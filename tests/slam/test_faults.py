@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -13,25 +13,13 @@ from explore_bt_slam import KissGtsam
 from explore_bt.interfaces import RobotContext
 from explore_bt.testing.slam_room import Room, ScriptedRobot
 from explore_bt.types import Health, Measurement, Pose2, Scan2D, wrap_angle
-
-Fault = Callable[[Scan2D, np.random.Generator], list[Scan2D]]
-
-
-def dropout(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
-    """Two seconds without a scan."""
-    return [] if 4.0 < scan.stamp_s <= 6.0 else [scan]
+from tests.slam.faults import Fault, backwards, check, dropout, faulty
 
 
 def invalid(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
     """Three beams in ten are NaN."""
     ranges = np.where(rng.random(scan.ranges_m.shape[0]) < 0.3, np.nan, scan.ranges_m)
     return [dataclasses.replace(scan, ranges_m=ranges.astype(np.float32))]
-
-
-def backwards(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
-    """Every tenth scan claims to be half a second old."""
-    is_late = round(10.0 * scan.stamp_s) % 10 == 0
-    return [dataclasses.replace(scan, stamp_s=scan.stamp_s - 0.5) if is_late else scan]
 
 
 def twice(scan: Scan2D, rng: np.random.Generator) -> list[Scan2D]:
@@ -67,12 +55,6 @@ def course(robot: ScriptedRobot) -> Iterator[Measurement]:
         yield from robot.drive(speed_mps, turn_rps, duration_s)
 
 
-def faulty(measured: Iterable[Measurement], fault: Fault) -> Iterator[Measurement]:
-    rng = np.random.default_rng(7)
-    for each in measured:
-        yield from fault(each, rng) if isinstance(each, Scan2D) else [each]
-
-
 @pytest.mark.parametrize("with_imu", [True, False])
 @pytest.mark.parametrize("fault", [dropout, invalid, backwards, twice, half_blocked, crowd])
 def test_bad_data_costs_no_more_than_ten_centimetres_unless_health_says_so(
@@ -81,14 +63,8 @@ def test_bad_data_costs_no_more_than_ten_centimetres_unless_health_says_so(
     robot = ScriptedRobot(Room.furnished(), Pose2(-0.6, -0.5, 0.0))
     slam = KissGtsam(KissGtsam.Options())
     slam.setup(RobotContext(start=robot.pose))
-    for measurement in faulty(course(robot), fault):
-        if isinstance(measurement, Scan2D) or with_imu:
-            slam.update(measurement)
-        if isinstance(measurement, Scan2D) and measurement.stamp_s == robot.time_s:
-            estimate = slam.estimate()
-            off_m = estimate.T_map_base.distance_to(robot.pose)
-            assert off_m < 0.10 or estimate.health is not Health.OK, measurement.stamp_s
-    assert slam.estimate().T_map_base.distance_to(robot.pose) < 0.10
+    measured = faulty(course(robot), fault)
+    check(slam, robot, (each for each in measured if with_imu or isinstance(each, Scan2D)))
 
 
 def test_a_turn_that_the_gyroscope_did_not_feel_is_not_believed() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from explore_bt.types import Pose2, RgbdFrame
 from explore_bt_slam.sight import Sight, SightMaker
+from explore_bt_slam.sight_match import SightMatch, match_sights
 
 __all__ = ["Camera"]
 
@@ -16,6 +17,7 @@ class Camera:
     def __init__(self) -> None:
         self._maker = SightMaker()
         self._newest: tuple[RgbdFrame, Pose2] | None = None
+        self._sights: tuple[Sight | None, Sight | None] = (None, None)
 
     def take(self, frame: RgbdFrame, T_keyframe_base: Pose2) -> None:
         """An image, taken at ``T_keyframe_base`` from the present keyframe."""
@@ -23,7 +25,18 @@ class Camera:
 
     def first(self, frame: RgbdFrame, T_keyframe_base: Pose2) -> Sight:
         """The features of the first image of all: its keyframe was made before it came."""
-        return self._maker.sight(frame, T_keyframe_base)
+        sight = self._maker.sight(frame, T_keyframe_base)
+        self._sights = (None, sight)
+        return sight
+
+    def forget(self) -> None:
+        """The next keyframe does not follow the last one."""
+        self._newest, self._sights = None, (None, None)
+
+    def step(self) -> SightMatch | None:
+        """How the last two keyframes lie to each other by what both see; None if that says nothing."""
+        before, last = self._sights
+        return None if before is None or last is None else match_sights(before, last)
 
     def sight(self, stamp_s: float, T_keyframe_new: Pose2) -> Sight | None:
         """What the keyframe made at ``stamp_s``, at ``T_keyframe_new`` from the last one, looks like.
@@ -31,7 +44,9 @@ class Camera:
         None without an image of the half second before it.
         """
         newest, self._newest = self._newest, None
-        if newest is None or not 0.0 <= stamp_s - newest[0].stamp_s <= _STALE_S:
-            return None
-        frame, T_keyframe_base = newest
-        return self._maker.sight(frame, T_keyframe_new.between(T_keyframe_base))
+        sight = None
+        if newest is not None and 0.0 <= stamp_s - newest[0].stamp_s <= _STALE_S:
+            frame, T_keyframe_base = newest
+            sight = self._maker.sight(frame, T_keyframe_new.between(T_keyframe_base))
+        self._sights = (self._sights[1], sight)
+        return sight

@@ -104,6 +104,11 @@ class FrontEnd:
         """Correct the speed by the wheels."""
         self._filter.take_odometry(odometry)
 
+    def take_step(self, off_m: float, span_s: float, sigma_m: float) -> None:
+        """The camera says that the robot has come farther by ``off_m`` in the last ``span_s`` seconds."""
+        if span_s > 0.0:
+            self._filter.take_speed(float(self.velocity_mps[0]) + off_m / span_s, sigma_m / span_s)
+
     def first(self, scan: Scan2D, start: Pose2) -> Registered:
         """Straighten the first scan of all; there is nothing yet to register it against."""
         self._filter.advance_to(scan.stamp_s)

@@ -149,6 +149,10 @@ class InertialFilter:
             measured = np.array([step.x, step.y]) / span_s
             self._measure_velocity(slice(3, 5), measured, self._noise.odometry)
 
+    def take_speed(self, along_mps: float, sigma_mps: float) -> None:
+        """The speed ahead, as the camera saw it go by."""
+        self._measure_velocity(slice(3, 4), np.array([along_mps]), sigma_mps)
+
     def roll(self) -> None:
         """A robot on wheels does not slide sideways (the paper's unicycle), nor go faster than it can."""
         self._measure_velocity(slice(4, 5), np.zeros(1), self._noise.sideways)

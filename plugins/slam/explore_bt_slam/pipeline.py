@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +19,7 @@ from explore_bt_slam.keyframes import KeyframeRule
 from explore_bt_slam.mapper import Mapper
 from explore_bt_slam.options import KissGtsamOptions
 from explore_bt_slam.scan_check import fault_of, without_body
+from explore_bt_slam.seen_step import fuse_step
 from explore_bt_slam.storage import (
     Arrays,
     pack_edges,
@@ -185,10 +188,32 @@ class Pipeline:
         sweep, sight = registered.sweep, None
         if self.camera is not None:
             sight = self.camera.sight(sweep.stamp_s, self._relative)
+            covariance = self._seen_step(self.camera, sweep.stamp_s, covariance)
         self._keyframe = self.back.extend(sweep, self._keyframe, self._relative, covariance, sight)
         self._relative = Pose2.identity()
         self.front.relocate(*self.back.surroundings(self._keyframe))
         self.mapper.follow(self.back.poses)
+
+    def _seen_step(
+        self, camera: Camera, stamp_s: float, covariance: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Where the lidar leaves a direction open, what the camera sees go by closes it.
+
+        Corrects the step from the last keyframe, and the speed.
+
+        Returns:
+            The step's covariance, new keyframe's axes.
+        """
+        step = camera.step() if self._weak_keyframes else None
+        fused = fuse_step(self._relative, covariance, step) if step else None
+        if fused is None:
+            return covariance
+        relative, covariance = fused
+        span_s = stamp_s - self.back.keyframes[self._keyframe].stamp_s
+        self.front.take_step(relative.x - self._relative.x, span_s, math.sqrt(float(covariance[0, 0])))
+        self._relative = relative
+        self._weak_keyframes = 0
+        return covariance
 
     def _look_round(self, registered: Registered) -> None:
         """Lost: perhaps this is a place of the map after all."""
@@ -198,6 +223,8 @@ class Pipeline:
 
     def _enter(self, pose: Pose2) -> None:
         """Go on from the keyframe nearest to a pose in the map."""
+        if self.camera is not None:
+            self.camera.forget()
         poses = self.back.poses
         self._keyframe = int(np.argmin(np.hypot(poses[:, 0] - pose.x, poses[:, 1] - pose.y)))
         self._relative = self.back.pose(self._keyframe).between(pose)

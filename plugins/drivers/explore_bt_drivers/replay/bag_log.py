@@ -3,39 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from explore_bt.errors import LogError
-from explore_bt.types import Measurement
+from explore_bt.types import Measurement, RgbdFrame
+from explore_bt_drivers.replay.bag_camera import CAMERA_INFO, IMAGE, BagCamera, choose_camera
 from explore_bt_drivers.replay.bag_messages import MESSAGES, TRANSFORMS
 from explore_bt_drivers.replay.log import MeasurementLog
 from explore_bt_drivers.replay.mountings import Mountings
 
 __all__ = ["BagLog"]
 
+_MOVING_MESSAGES = 500
 _LIDARS = ("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2")
 
 
 class BagLog(MeasurementLog):
-    """A ROS 1 bag (a file) or a ROS 2 bag (a folder): LaserScan, PointCloud2, Imu, Odometry, tf_static.
+    """A ROS 1 bag (a file) or a ROS 2 bag (a folder): LaserScan, PointCloud2, Imu, Odometry, Image, tf.
 
-    Of each kind one topic is played. Where a sensor sits is taken from ``tf_static``; a sensor whose frame
-    nothing ties to the robot's base is taken to sit in ``base_link``, and ``notes`` says so.
+    Of each kind one topic is played, of images colour and registered depth with their ``CameraInfo``. Where a
+    sensor sits is taken from ``tf_static``, or from ``tf`` where the first 500 messages there agree; a sensor
+    whose frame nothing ties to the robot's base is taken to sit in ``base_link``, and ``notes`` says so.
 
     Args:
         path: file or folder.
         scan_topic: the lidar's topic; None: the only LaserScan topic, else the only PointCloud2 topic.
         range_max_m: from there on a range means "no return"; None: each scan's own ``range_max``.
+        image_topics: colour and depth; None: the only ones that fit.
     """
 
-    def __init__(self, path: Path, scan_topic: str | None = None, range_max_m: float | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        scan_topic: str | None = None,
+        range_max_m: float | None = None,
+        image_topics: tuple[str | None, str | None] = (None, None),
+    ) -> None:
         super().__init__(path)
         self._scan_topic = scan_topic
         self._range_max_m = range_max_m
+        self._image_topics = image_topics
         self._read_messages, self._messages = 0, 0
 
     @property
@@ -48,17 +60,20 @@ class BagLog(MeasurementLog):
             bag = self._opened(open_until_end)
             self._messages = sum(connection.msgcount for connection in bag.connections)
             played = self._choose_topics(bag.connections)
-            mountings = Mountings(self.notes)
-            for connection, _, data in self._raw(bag, _of_type(bag.connections, TRANSFORMS)):
-                if connection.topic.endswith("tf_static"):
-                    self._learn(mountings, connection, self._message(bag, connection, data))
+            mountings = self._learnt_mountings(bag)
+            camera = self._camera(bag, mountings)
+            seen = camera.topics if camera else ()
             for connection, _, data in self._raw(bag, ()):
                 self._read_messages += 1
-                if connection.topic not in played:
+                if camera and connection.topic in seen:
+                    frame = self._frame(camera, connection, self._message(bag, connection, data))
+                    if frame is not None:
+                        yield frame
+                elif connection.topic in played:
+                    message = self._message(bag, connection, data)
+                    yield self._measurement(connection, message, mountings)
+                else:
                     self.passed_over[connection.topic] += 1
-                    continue
-                message = self._message(bag, connection, data)
-                yield self._measurement(connection, message, mountings)
 
     def _opened(self, stack: ExitStack) -> Any:
         try:
@@ -81,7 +96,7 @@ class BagLog(MeasurementLog):
             ) from None
 
     def _choose_topics(self, connections: Sequence[Any]) -> set[str]:
-        topics = {kind: sorted({each.topic for each in _of_type(connections, kind)}) for kind in MESSAGES}
+        topics = {kind: _topics(connections, kind) for kind in MESSAGES}
         lidars = [topic for kind in _LIDARS for topic in topics[kind]]
         if self._scan_topic is not None:
             if self._scan_topic not in lidars:
@@ -99,6 +114,23 @@ class BagLog(MeasurementLog):
                 chosen.add(topics[kind][0])
                 self.notes += [f"{topic} is not played: {topics[kind][0]} is" for topic in topics[kind][1:]]
         return chosen
+
+    def _camera(self, bag: Any, mountings: Mountings) -> BagCamera | None:
+        images, infos = (_topics(bag.connections, kind) for kind in (IMAGE, CAMERA_INFO))
+        for topic in filter(None, self._image_topics):
+            if topic not in images:
+                known = ", ".join(images) or "none"
+                raise LogError(f'{self.path}: no image topic "{topic}"; image topics are {known}')
+
+        def first_of(topic: str) -> Any:
+            connections = [each for each in bag.connections if each.topic == topic and each.msgcount]
+            found = next(self._raw(bag, connections), None) if connections else None
+            return None if found is None else self._message(bag, found[0], found[2])
+
+        chosen = choose_camera(images, infos, self._image_topics, first_of, self.notes)
+        if chosen is None and any(self._image_topics):
+            raise LogError(f"{self.path}: {self.notes[-1]}")
+        return BagCamera(chosen, mountings, self.notes) if chosen else None
 
     def _only(self, topics: Sequence[str], hint: str) -> str:
         if len(topics) > 1:
@@ -127,16 +159,35 @@ class BagLog(MeasurementLog):
         except Exception as fault:  # the same
             raise self._fault(connection, _words(fault)) from None
 
-    def _learn(self, mountings: Mountings, connection: Any, message: Any) -> None:
-        try:
-            mountings.learn(message)
-        except ValueError as fault:
-            raise LogError(f"{self.path}: a message on {connection.topic}: {fault}") from None
+    def _learnt_mountings(self, bag: Any) -> Mountings:
+        mountings = Mountings(self.notes)
+        transforms = _of_type(bag.connections, TRANSFORMS)
+        static = [each for each in transforms if each.topic.endswith("tf_static")]
+        moving = [each for each in transforms if each not in static]
+        for connections, learn in ((static, mountings.learn), (moving, mountings.watch)):
+            found = self._raw(bag, connections) if connections else iter(())
+            for connection, _, data in islice(found, None if learn == mountings.learn else _MOVING_MESSAGES):
+                message = self._message(bag, connection, data)
+                try:
+                    learn(message)
+                except ValueError as fault:
+                    raise LogError(f"{self.path}: a message on {connection.topic}: {fault}") from None
+        return mountings
 
     def _measurement(self, connection: Any, message: Any, mountings: Mountings) -> Measurement:
+        with self._told(connection):
+            return MESSAGES[connection.msgtype](message, mountings, self._range_max_m)
+
+    def _frame(self, camera: BagCamera, connection: Any, message: Any) -> RgbdFrame | None:
+        with self._told(connection):
+            return camera.take(connection.topic, message)
+
+    @contextmanager
+    def _told(self, connection: Any) -> Iterator[None]:
+        """What does not fit in a message, as an error that names it."""
         try:
             with np.errstate(all="ignore"):  # what overflows in a damaged message is infinite afterwards
-                return MESSAGES[connection.msgtype](message, mountings, self._range_max_m)
+                yield
         except ValueError as fault:
             raise self._fault(connection, str(fault)) from None
 
@@ -147,6 +198,10 @@ class BagLog(MeasurementLog):
 
 def _of_type(connections: Sequence[Any], kind: str) -> list[Any]:
     return [each for each in connections if each.msgtype == kind]
+
+
+def _topics(connections: Sequence[Any], kind: str) -> list[str]:
+    return sorted({each.topic for each in _of_type(connections, kind)})
 
 
 def _words(fault: Exception) -> str:

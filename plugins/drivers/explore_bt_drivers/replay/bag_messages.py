@@ -13,7 +13,7 @@ from explore_bt.types import Imu, Measurement, Pose2, Scan2D, WheelOdometry
 from explore_bt_drivers.replay.bag_cloud import point_cloud
 from explore_bt_drivers.replay.mountings import Mountings, planar, rotation_of
 
-__all__ = ["MESSAGES", "TRANSFORMS"]
+__all__ = ["MESSAGES", "TRANSFORMS", "stamp_of"]
 
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
 _SLOWEST_SWEEP_S = 5.0
@@ -37,7 +37,7 @@ def _scan(message: Any, mountings: Mountings, range_max_m: float | None) -> Scan
     T = mountings.of(message.header.frame_id)
     angles = first + step * np.arange(len(ranges), dtype=np.float64)
     return Scan2D(
-        _stamp_s(message) + sweep_s,
+        stamp_of(message) + sweep_s,
         -angles if T[2, 2] < 0.0 else angles,  # a lidar that hangs upside down turns the other way
         ranges.astype(np.float32),
         beam_s * np.arange(len(ranges), dtype=np.float64) - sweep_s,
@@ -52,7 +52,7 @@ def _imu(message: Any, mountings: Mountings, _: float | None) -> Imu:
     """``sensor_msgs/Imu``, turned into the axes of ``base_link``."""
     turn = mountings.of(message.header.frame_id)[:3, :3]
     return Imu(
-        _stamp_s(message),
+        stamp_of(message),
         _turned(turn, message.angular_velocity, "angular_velocity"),
         _turned(turn, message.linear_acceleration, "linear_acceleration"),
     )
@@ -62,14 +62,15 @@ def _odometry(message: Any, _: Mountings, __: float | None) -> WheelOdometry:
     """``nav_msgs/Odometry``: its pose, in the plane."""
     pose = message.pose.pose
     place = (_finite("position.x", pose.position.x), _finite("position.y", pose.position.y))
-    return WheelOdometry(_stamp_s(message), Pose2(*place, planar(rotation_of(pose.orientation))))
+    return WheelOdometry(stamp_of(message), Pose2(*place, planar(rotation_of(pose.orientation))))
 
 
 def _cloud(message: Any, mountings: Mountings, _: float | None) -> Measurement:
-    return point_cloud(message, _stamp_s(message), mountings.of(message.header.frame_id))
+    return point_cloud(message, stamp_of(message), mountings.of(message.header.frame_id))
 
 
-def _stamp_s(message: Any) -> float:
+def stamp_of(message: Any) -> float:
+    """Seconds of a message's header."""
     stamp = message.header.stamp
     return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
 

@@ -87,7 +87,8 @@ class CarmenLine:
         """
         if cut and not self.is_ended:
             return LogCutOff(f"{self._place}: cut off: the file ends in the middle of this {self.name} line")
-        return LogError(f"{self._place}: {self.name}: {message}")
+        words = f"{self.name}: {message}"
+        return LogError(f"{self._place}: {''.join(c if c.isprintable() else '�' for c in words)}")
 
     def _word(self, what: str) -> str:
         if self._next >= len(self._words):

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.errors import LogCutOff, LogError
+from explore_bt.errors import LogError
 from explore_bt.types import Measurement, Pose2, Scan2D, WheelOdometry
 from explore_bt_drivers.replay.carmen_line import CarmenLine
 from explore_bt_drivers.replay.log import MeasurementLog
@@ -128,7 +128,7 @@ class CarmenLog(MeasurementLog):
         if line.name in ("", "#"):
             return
         if not line.is_ended and any(name.startswith(line.name) for name in _READ):
-            raise LogCutOff(f"{self.path}: cut off: the file ends in the middle of its last line")
+            raise line.fault("", cut=True)
         if not _NAME.fullmatch(line.name):
             raise line.fault("expected the name of a CARMEN message, in capitals")
         self.passed_over[line.name] += 1

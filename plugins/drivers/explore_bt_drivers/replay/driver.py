@@ -16,6 +16,8 @@ from explore_bt_drivers.replay.stamps import ReplayTime
 
 __all__ = ["Replay"]
 
+_USUAL_RADIUS_M = 0.25
+
 
 class Replay(Driver, Playback):
     """What a robot once measured, played again in file order; it obeys nobody.
@@ -35,6 +37,7 @@ class Replay(Driver, Playback):
         self._options = options
         self._clock: ManualClock | None = None
         self._start = Pose2.identity()
+        self._radius_m = _USUAL_RADIUS_M
         self._log: MeasurementLog | None = None
         self._coming: Iterator[Recorded] = iter(())
         self._next: Recorded | None = None
@@ -45,10 +48,12 @@ class Replay(Driver, Playback):
         Raises:
             LogError: a log that cannot be read.
         """
-        self._start = context.start or Pose2.identity()
         self._clock = ManualClock()
         self._coming = self.recorded()
         self._next = next(self._coming, None)
+        assert self._log is not None
+        self._start = context.start or self._log.start or Pose2.identity()
+        self._radius_m = self._options.radius or self._log.radius_m or _USUAL_RADIUS_M
 
     @property
     def clock(self) -> Clock:
@@ -60,7 +65,7 @@ class Replay(Driver, Playback):
     @property
     def footprint_radius_m(self) -> float:
         """Radius of the circular footprint."""
-        return self._options.radius
+        return self._radius_m
 
     @property
     def limits(self) -> MotionLimits:
@@ -69,7 +74,7 @@ class Replay(Driver, Playback):
 
     @property
     def start(self) -> Pose2:
-        """As given, or the origin: a log's map begins where its robot stood."""
+        """As given or as recorded, or the origin: a log's map begins where its robot stood."""
         return self._start
 
     def read(self) -> Sequence[Measurement]:

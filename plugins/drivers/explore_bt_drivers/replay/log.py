@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from explore_bt.types import Measurement
+from explore_bt.types import Measurement, Pose2
 
 __all__ = ["MeasurementLog"]
 
@@ -22,6 +22,8 @@ class MeasurementLog(ABC):
         held: what has come so far, by kind and frame: ``{"Scan2D laser": 120}``.
         passed_over: messages so far that no measurement type exists for, by their name.
         notes: what had to be assumed, one sentence each.
+        start: where in ``map`` the robot stood at the first measurement, if the log says so.
+        radius_m: radius of its footprint, if the log says so. Both are known with the first measurement.
     """
 
     def __init__(self, path: Path) -> None:
@@ -29,6 +31,8 @@ class MeasurementLog(ABC):
         self.held: Counter[str] = Counter()
         self.passed_over: Counter[str] = Counter()
         self.notes: list[str] = []
+        self.start: Pose2 | None = None
+        self.radius_m: float | None = None
 
     def __iter__(self) -> Iterator[Measurement]:
         """All measurements.

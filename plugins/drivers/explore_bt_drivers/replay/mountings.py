@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 __all__ = ["Mountings", "planar", "rotation_of"]
 
 _FARTHEST_M = 1e6
+_STILL = 1e-3
 _BASES = ("base_link", "base_footprint", "base")
 
 
 class Mountings:
-    """The tree of static frames.
+    """The tree of frames that do not move on the robot.
 
     Args:
         notes: takes one sentence for each frame whose place on the robot nobody told.
@@ -23,6 +24,7 @@ class Mountings:
     def __init__(self, notes: list[str]) -> None:
         self._notes = notes
         self._parents: dict[str, tuple[str, NDArray[np.float64]]] = {}
+        self._seen: dict[str, tuple[str, NDArray[np.float64]] | None] = {}
         self._known: dict[str, NDArray[np.float64]] = {}
 
     def learn(self, message: Any) -> None:
@@ -32,19 +34,25 @@ class Mountings:
             ValueError: a transform that is none.
         """
         for each in message.transforms:
-            transform = np.eye(4)
-            transform[:3, :3] = rotation_of(each.transform.rotation)
-            shift = each.transform.translation
-            transform[:3, 3] = shift.x, shift.y, shift.z
-            if not (np.abs(transform[:3, 3]) < _FARTHEST_M).all():
-                raise ValueError(f"the translation to {each.child_frame_id} is {transform[:3, 3].tolist()} m")
-            self._parents[_plain(each.child_frame_id)] = (_plain(each.header.frame_id), transform)
+            self._parents[_plain(each.child_frame_id)] = _link(each)
+
+    def watch(self, message: Any) -> None:
+        """Take in a ``tf2_msgs/TFMessage`` of transforms that may move: one that never does is as good.
+
+        Raises:
+            ValueError: the same.
+        """
+        for each in message.transforms:
+            child, (parent, transform) = _plain(each.child_frame_id), _link(each)
+            before = self._seen.setdefault(child, (parent, transform))
+            if before and (before[0] != parent or not np.allclose(before[1], transform, atol=_STILL)):
+                self._seen[child] = None
 
     def of(self, frame: str) -> NDArray[np.float64]:
         """(4, 4) float64 ``T_base_sensor``; the identity where nothing ties the frame to the robot."""
         name = _plain(frame)
         if name not in self._known:
-            found = self._chain(name)
+            found = self.known(frame)
             if found is None:
                 self._notes.append(
                     f'nothing tells where frame "{frame}" is on the robot: taken for base_link'
@@ -52,17 +60,31 @@ class Mountings:
             self._known[name] = np.eye(4) if found is None else found
         return self._known[name]
 
-    def _chain(self, frame: str) -> NDArray[np.float64] | None:
+    def known(self, frame: str) -> NDArray[np.float64] | None:
+        """(4, 4) float64 ``T_base_sensor``; None where nothing ties the frame to the robot."""
+        frame = _plain(frame)
         transform, passed = np.eye(4), {frame}
         while frame not in _BASES:
-            if frame not in self._parents:
+            link = self._parents.get(frame) or self._seen.get(frame)
+            if link is None:
                 return None
-            frame, step = self._parents[frame]
+            frame, step = link
             if frame in passed:
                 return None
             passed.add(frame)
             transform = step @ transform
         return transform
+
+
+def _link(transform: Any) -> tuple[str, NDArray[np.float64]]:
+    """Parent frame and (4, 4) ``T_parent_child`` of a ``geometry_msgs/TransformStamped``."""
+    T = np.eye(4)
+    T[:3, :3] = rotation_of(transform.transform.rotation)
+    shift = transform.transform.translation
+    T[:3, 3] = shift.x, shift.y, shift.z
+    if not (np.abs(T[:3, 3]) < _FARTHEST_M).all():
+        raise ValueError(f"the translation to {transform.child_frame_id} is {T[:3, 3].tolist()} m")
+    return _plain(transform.header.frame_id), T
 
 
 def rotation_of(quaternion: Any) -> NDArray[np.float64]:

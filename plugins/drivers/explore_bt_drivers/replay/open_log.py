@@ -37,7 +37,8 @@ def open_log(options: ReplayOptions) -> MeasurementLog:
         # imported here: rosbags is an extra
         from explore_bt_drivers.replay.bag_log import BagLog
 
-        return BagLog(path, options.scan_topic, options.range_max)
+        images = (options.colour_topic, options.depth_topic)
+        return BagLog(path, options.scan_topic, options.range_max, images)
     return CarmenLog(path, options.field_of_view, options.range_max, options.odom_lines)
 
 

@@ -19,7 +19,9 @@ class ReplayOptions(PluginOptions):
     log: FileOrFolderPath = Field(
         description="CARMEN log (also .gz, .bz2), recording.mcap, ROS 1 bag, ROS 2 bag folder"
     )
-    radius: Length = Field(0.25, ge=0.05, le=2.0, description="radius of the circular footprint")
+    radius: Length | None = Field(
+        None, ge=0.05, le=2.0, description="of the circular footprint; none: as recorded, else 25 cm"
+    )
     speed: Speed = Field(2.0, ge=0.01, le=20.0, description="the recorded robot was never faster")
     turn_rate: AngularRate = Field(3.0, ge=0.01, le=20.0, description="it never turned faster")
     range_max: Length | None = Field(
@@ -29,6 +31,9 @@ class ReplayOptions(PluginOptions):
     odom_lines: bool = Field(False, description="play CARMEN's ODOM lines too; laser lines carry odometry")
     robot: str | None = Field(None, description="whose scans of a recording.mcap; none: the first robot's")
     scan_topic: str | None = Field(None, description="the lidar's topic in a bag; none: the only one")
+
+    colour_topic: str | None = Field(None, description="a bag's camera; none: the only one with depth")
+    depth_topic: str | None = Field(None, description="its depth, registered; none: the only one that fits")
 
     @property
     def limits(self) -> MotionLimits:

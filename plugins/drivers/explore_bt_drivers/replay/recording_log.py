@@ -1,33 +1,30 @@
-"""Our own recordings: the scans of one robot."""
+"""Our own recordings: what one robot's SLAM was given."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from explore_bt.errors import LogCutOff, LogError
-from explore_bt.recording import RecordedMessage, read_recording
-from explore_bt.types import Measurement, Pose2, Scan2D
+from explore_bt.recording import RecordedMessage, decode_measurements, read_recording
+from explore_bt.types import Measurement, PointCloud, Pose2, Scan2D
 from explore_bt_drivers.replay.log import MeasurementLog
 
 __all__ = ["RecordingLog"]
 
-_RANGE_MIN_M = 0.02
-
 
 class RecordingLog(MeasurementLog):
-    """``recording.mcap`` of a mission: the scans as they were recorded, to the centimetre.
+    """``recording.mcap`` of a mission: scans, IMU and wheel odometry in the order in which SLAM heard them.
 
-    A recording holds neither IMU nor wheel odometry, and by default two scans a second (the recorder's
-    option ``scan_period``).
+    Clouds are in it if the recorder was told to (its option ``clouds``), images never.
 
     Args:
         path: the file.
-        robot: whose scans; None: the first robot's.
+        robot: whose measurements; None: the first robot's.
         range_max_m: the lidar's range; None: as recorded.
     """
 
@@ -35,7 +32,7 @@ class RecordingLog(MeasurementLog):
         super().__init__(path)
         self._robot = robot
         self._range_max_m = range_max_m
-        self._done, self._span_s = 0.0, 0.0
+        self._done = 0.0
 
     @property
     def progress(self) -> float:
@@ -49,58 +46,46 @@ class RecordingLog(MeasurementLog):
         if robot not in robots:
             known = ", ".join(robots) or "none"
             raise LogError(f'{self.path}: there is no robot "{robot}" in it; robots are {known}')
-        scan_topic, pose_topic = f"/{robot}/scan", f"/{robot}/pose"
-        estimate = Pose2.identity()
+        self.start = next(map(_pose, recording.messages(f"/{robot}/pose")), None)
+        radius_m = recording.info.get("footprint_radius_m", {}).get(robot)
+        self.radius_m = radius_m if isinstance(radius_m, int | float) else None
         scans = 0
-        for message in recording.messages():
+        for index, message in enumerate(recording.messages(f"/{robot}/measured"), 1):
             self._done = min(message.stamp_s / max(recording.duration_s, 1e-9), 1.0)
-            if message.topic == scan_topic:
-                scans += 1
-                yield self._scan(message, scans, estimate)
-            elif message.topic == pose_topic:
-                estimate = self._understood(message, scans, _pose)
-            else:
-                self.passed_over[message.topic] += 1
+            for measurement in self._measurements(message, index):
+                scans += isinstance(measurement, Scan2D | PointCloud)
+                yield measurement
         if recording.damage:
             raise LogCutOff(f"{self.path}: {recording.damage}")
         if not scans:
-            raise LogError(f"{self.path}: not one scan of robot {robot} in it")
+            raise LogError(
+                f"{self.path}: not one scan of robot {robot} in it; of a 3D lidar the recorder keeps "
+                "nothing unless its option clouds says so"
+            )
 
-    def _scan(self, message: RecordedMessage, index: int, estimate: Pose2) -> Scan2D:
-        return self._understood(message, index, lambda value: _scan(value, estimate, self._range_max_m))
-
-    def _understood(self, message: RecordedMessage, index: int, read: Any) -> Any:
+    def _measurements(self, message: RecordedMessage, index: int) -> Sequence[Measurement]:
         try:
             with np.errstate(all="ignore"):  # what overflows in a damaged message is infinite afterwards
-                return read(message.value)
-        except (KeyError, TypeError, ValueError, OverflowError) as fault:
+                return [self._cut(each) for each in decode_measurements(message.value)]
+        except (KeyError, TypeError, ValueError, IndexError, OverflowError, MemoryError) as fault:
             raise LogError(
-                f"{self.path}: message on {message.topic} at {message.stamp_s:.3f} s (scan {index}) is not "
-                f"as this version of explore-bt writes it ({type(fault).__name__}: {fault})"
+                f"{self.path}: message {index} on {message.topic}, at {message.stamp_s:.3f} s, is not as "
+                f"this version of explore-bt writes it ({type(fault).__name__}: {fault})"
             ) from None
 
-
-def _scan(value: Mapping[str, Any], estimate: Pose2, range_max_m: float | None) -> Scan2D:
-    """A ``foxglove.LaserScan`` of ours; its pose is the sensor's in ``map``."""
-    written = value["ranges"]
-    ranges = np.array([math.nan if each is None else each for each in written], dtype=np.float64)
-    stamp = value["timestamp"]
-    reach_m = float(range_max_m or value["range_max"])
-    ranges[ranges >= reach_m] = math.inf
-    ranges[ranges <= 0.0] = math.nan
-    return Scan2D(
-        stamp["sec"] + 1e-9 * stamp["nsec"],
-        np.linspace(float(value["start_angle"]), float(value["end_angle"]), len(ranges)),
-        ranges.astype(np.float32),
-        np.linspace(-float(value["sweep_s"]), 0.0, len(ranges)),
-        float(value["range_min"]),
-        reach_m,
-        T_base_sensor=estimate.between(_pose(value)),
-    )
+    def _cut(self, measurement: Measurement) -> Measurement:
+        if self._range_max_m is None or not isinstance(measurement, Scan2D):
+            return measurement
+        seen = measurement.ranges_m >= self._range_max_m
+        ranges = np.where(seen, np.float32(np.inf), measurement.ranges_m)
+        return replace(measurement, ranges_m=ranges, range_max_m=self._range_max_m)
 
 
-def _pose(value: Mapping[str, Any]) -> Pose2:
-    position, turn = value["pose"]["position"], value["pose"]["orientation"]
-    return Pose2(
-        float(position["x"]), float(position["y"]), 2.0 * math.atan2(float(turn["z"]), float(turn["w"]))
-    )
+def _pose(message: RecordedMessage) -> Pose2 | None:
+    """Of a ``foxglove.PoseInFrame``; None where nothing was known."""
+    try:
+        position, turn = message.value["pose"]["position"], message.value["pose"]["orientation"]
+        yaw_rad = 2.0 * math.atan2(turn["z"], turn["w"])
+        return Pose2(float(position["x"]), float(position["y"]), yaw_rad)
+    except (KeyError, TypeError, ValueError):
+        return None
