@@ -22,7 +22,7 @@ def world(
     ] = "apartment",
     seed: Annotated[int, typer.Option(metavar="N", help="The same seed gives the same world.")] = 0,
 ) -> None:
-    """Draw a furnished apartment, an office floor, or a course of gaps, by seed.
+    """Draw a furnished flat, an office floor, or a course of gaps.
 
     Every room can be reached; missions take the file as their world.
     """

@@ -79,7 +79,7 @@ class FieldPlanner(Planner):
         radius_m = context.footprint_radius_m
         grid, start, goal = practice_grid(radius_m + self._options.margin)
         for state in (grid, *later_states(grid)):
-            self.plan(state, start, goal, radius_m)
+            self._plan(state, start, goal, radius_m, self._options.margin, never)
         self.distances(grid, start, [goal], radius_m)
         self._terrains, self._memory = self._empty()
 
