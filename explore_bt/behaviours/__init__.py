@@ -6,7 +6,6 @@ from explore_bt.behaviours.drive_to import DriveTo
 from explore_bt.behaviours.find_frontier import FindFrontier
 from explore_bt.behaviours.find_next_heading import FindNextHeading
 from explore_bt.behaviours.find_view import FindView
-from explore_bt.behaviours.find_viewpoint import FindViewpoint
 from explore_bt.behaviours.give_up_goal import GivenUp, GiveUpGoal
 from explore_bt.behaviours.record_waypoint import RecordWaypoint
 from explore_bt.behaviours.reset_half_planes import ResetHalfPlanes
@@ -25,7 +24,6 @@ __all__ = [
     "FindFrontier",
     "FindNextHeading",
     "FindView",
-    "FindViewpoint",
     "GiveUpGoal",
     "GivenUp",
     "RecordWaypoint",
@@ -45,7 +43,6 @@ LEAVES = (
     FindFrontier,
     FindNextHeading,
     FindView,
-    FindViewpoint,
     GiveUpGoal,
     RecordWaypoint,
     ResetHalfPlanes,

@@ -21,16 +21,14 @@ One decision takes the steps of ALGORITHM.md in this order::
 
 What the paper leaves open is answered on the map::
 
-    OccupancyGrid ──► clearance_field ──► travel_field ──┐
-          └─────────► find_frontiers ────────────────────┴──► choose_viewpoints
-                                                              viewpoints, or the reason why not
+    OccupancyGrid ──► clearance_field ──► travel_field ──► ViewPlaces ──► choose_views ──► order_views
+          └─────────► find_frontiers ──► what_remains, once nothing is left to be seen
 
 ``CoverageMeter`` and ``ate_rmse_m`` measure a run against the truth. ``warm_up`` compiles the kernels.
 """
 
 from explore_bt.exploration.alignment import align_se2, ate_rmse_m
 from explore_bt.exploration.arguments import ArgumentError
-from explore_bt.exploration.choice import choose_viewpoints
 from explore_bt.exploration.clearance import clearance_at, clearance_field
 from explore_bt.exploration.compilation import warm_up
 from explore_bt.exploration.coverage import CoverageMeter
@@ -48,7 +46,6 @@ from explore_bt.exploration.tour import open_tour
 from explore_bt.exploration.travel import nearest_reaching_cell, travel_field
 from explore_bt.exploration.view_places import ViewPlaces
 from explore_bt.exploration.view_tour import TourTaste, View, ViewSet, choose_views, order_views
-from explore_bt.exploration.viewpoint import LeftOpen, Viewpoint, ViewpointChoice, reachable_frontiers
 from explore_bt.exploration.waypoint import next_waypoint
 
 __all__ = [
@@ -58,17 +55,13 @@ __all__ = [
     "Frontier",
     "HalfPlane",
     "HalfPlaneHistory",
-    "LeftOpen",
     "Outlooks",
     "TourTaste",
     "View",
     "ViewPlaces",
     "ViewSet",
-    "Viewpoint",
-    "ViewpointChoice",
     "align_se2",
     "ate_rmse_m",
-    "choose_viewpoints",
     "choose_views",
     "clearance_at",
     "clearance_field",
@@ -83,7 +76,6 @@ __all__ = [
     "order_by_safety",
     "order_views",
     "passage_field",
-    "reachable_frontiers",
     "repeated_visit",
     "scan_of_grid",
     "sentences",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from explore_bt.exploration.choice import choose_viewpoints
 from explore_bt.exploration.clearance import clearance_field
-from explore_bt.exploration.frontier import find_frontiers
+from explore_bt.exploration.gain import visible_unknown_area
 from explore_bt.exploration.grid_scan import scan_of_grid
 from explore_bt.exploration.outlook import Outlooks
 from explore_bt.exploration.remains import what_remains
@@ -31,7 +30,7 @@ def warm_up() -> None:
     clearance_m = clearance_field(grid)
     for weight in (0.0, 1.0):
         travel_m = travel_field(clearance_m, (12, 10), 0.2, grid.resolution_m, clearance_weight=weight)
-    choose_viewpoints(grid, clearance_m, travel_m, find_frontiers(grid), 1.2, radius_m=0.2)
+    visible_unknown_area(grid, (1.0, 1.0), 1.2)
     scan_of_grid(grid, Pose2(1.0, 1.0, 0.0), 1.2)
     places, outlooks = ViewPlaces(grid, clearance_m, travel_m, radius_m=0.2), Outlooks()
     for _ in range(2):  # from the second time on it compares with the first

@@ -15,6 +15,8 @@ from explore_bt.types import FREE, OccupancyGrid, Pose2, Scan2D
 __all__ = ["scan_of_grid"]
 
 _NEAREST_M = 0.01
+_ALONG = 1e-12
+"""A ray that leaves its axis by less never leaves its row."""
 
 
 @njit(cache=True)
@@ -27,6 +29,7 @@ def _cast(cells, u, v, directions, reach):  # type: ignore[no-untyped-def]  # nu
     out = np.full(directions.size, np.inf)
     for i in range(directions.size):
         du, dv = math.cos(directions[i]), math.sin(directions[i])
+        du, dv = (0.0 if abs(du) < _ALONG else du), (0.0 if abs(dv) < _ALONG else dv)
         row, col = math.floor(v), math.floor(u)
         step_row, step_col = (1 if dv > 0.0 else -1), (1 if du > 0.0 else -1)
         per_row = abs(1.0 / dv) if dv != 0.0 else math.inf

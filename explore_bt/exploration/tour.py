@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["open_tour", "tour_length"]
+__all__ = ["open_tour"]
 
 
 @njit(cache=True)
@@ -93,8 +93,3 @@ def open_tour(
     between = np.ascontiguousarray(between_m, dtype=np.float64)
     weights = np.ones(len(between)) if weight is None else np.ascontiguousarray(weight, dtype=np.float64)
     return np.asarray(_improve(_nearest_first(between), between, weights, float(haste)))
-
-
-def tour_length(order: NDArray[np.int64], between_m: NDArray[np.float64]) -> float:
-    """Metres from the first place of an order to its last."""
-    return float(np.asarray(between_m)[order[:-1], order[1:]].sum())

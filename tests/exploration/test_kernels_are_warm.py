@@ -3,13 +3,18 @@ import math
 import numpy as np
 
 from explore_bt.exploration import (
+    Outlooks,
+    TourTaste,
+    ViewPlaces,
+    blocks,
+    choose_views,
     clearance_field,
     escape,
     find_frontiers,
     gain,
+    outlook,
     passage,
-    places,
-    sight,
+    tour,
     travel,
     travel_field,
     visible_unknown_area,
@@ -18,11 +23,16 @@ from explore_bt.exploration import (
 from explore_bt.types import FREE, UNKNOWN, OccupancyGrid
 
 KERNELS = (
+    blocks._best,
+    blocks._pool,
     escape._climb,
     gain._see_from_each,
+    outlook._changed_tiles,
+    outlook._look,
+    outlook._near_frontier,
+    outlook._touched,
     passage._flood,
-    places._best_per_block,
-    sight._look,
+    tour._improve,
     travel._spread,
 )
 
@@ -33,11 +43,15 @@ def test_after_warm_up_nothing_is_left_to_compile():
     assert all(count > 0 for count in compiled)
     rng = np.random.default_rng(0)
     wide = rng.choice([FREE, FREE, UNKNOWN], (60, 80)).astype(np.int8)
+    outlooks = Outlooks()
     for cells in (wide.copy(), wide[::2, ::2], np.asfortranarray(wide)):
         grid = OccupancyGrid(cells, 0.05, (0.0, 0.0))
         clearance = clearance_field(grid)
         clearance.flags.writeable = False
-        travel_field(clearance, np.array([(3, 3), (9, 9)], dtype=np.int32), 0.01, 0.05, clearance_weight=0.5)
+        at = np.array([(3, 3), (9, 9)], dtype=np.int32)
+        travel_m = travel_field(clearance, at, 0.01, 0.05, clearance_weight=0.5)
         visible_unknown_area(grid, (1, 1), 1.0, math.pi, 0)
         find_frontiers(grid)
+        places = ViewPlaces(grid, clearance, travel_m, radius_m=0.01)
+        choose_views(places, outlooks, (0.2, 0.2), 1.0, TourTaste())
     assert [len(kernel.signatures) for kernel in KERNELS] == compiled
