@@ -14,10 +14,16 @@ from explore_bt.units import Duration, Length
 __all__ = ["BackOut"]
 
 
+_NEAR_M = 0.05
+_CLEAR_OF_M = 0.5
+"""Beyond the footprint, what the scan meets is near; and so far back from what is."""
+
+
 class BackOut(Leaf):
     """Drives back along its own track to the first place with room around it.
 
-    Where the footprint went in it fits out again, whatever the map's cells make of the passage.
+    Where the footprint went in it fits out again, whatever the map's cells make of the passage. What the
+    scan sees close by counts even where the map has nothing: a chair leg may be thinner than a cell.
     SUCCESS there; FAILURE if the track is too short, or the safety gate holds the robot on it.
     """
 
@@ -38,10 +44,11 @@ class BackOut(Leaf):
         """Hand the controller the track."""
         track = way_back(self.robot.trajectory().poses[:, :2], self.at_most)
         clearance_m = clearance_at(self.robot.view().grid, track, self._enough_m)
-        self._has_room = bool(clearance_m[0] >= self._enough_m) and self.at_least == 0.0
+        at_least_m = max(self.at_least, _CLEAR_OF_M) if self._is_scan_near() else self.at_least
+        self._has_room = bool(clearance_m[0] >= self._enough_m) and at_least_m == 0.0
         self._has_way = len(track) > 1
         if self._has_way and not self._has_room:
-            path = _path_along(track, clearance_m, self._enough_m, self.at_least)
+            path = _path_along(track, clearance_m, self._enough_m, at_least_m)
             self.robot.pilot.follow(path)
             self.say(f"{path.length_m:.1f} m back along the way driven")
 
@@ -65,6 +72,14 @@ class BackOut(Leaf):
         """A way back that is cut off comes to rest."""
         if new_status is not Status.SUCCESS:
             self.robot.pilot.hold()
+
+    def _is_scan_near(self) -> bool:
+        """Whether the newest scan meets something so near that the safety gate may hold the robot."""
+        scan = self.robot.scan()
+        if scan is None:
+            return False
+        points = scan.points()
+        return bool((np.hypot(points[:, 0], points[:, 1]) < self.robot.footprint_radius_m + _NEAR_M).any())
 
     @property
     def _enough_m(self) -> float:

@@ -5,7 +5,7 @@ import pytest
 
 from explore_bt.behaviours import BackOut
 from explore_bt.interfaces import ControlStatus
-from explore_bt.testing.fake_robot import FakeRobot, open_floor
+from explore_bt.testing.fake_robot import FakeRobot, full_circle_scan, open_floor
 from explore_bt.tree import Blackboard, Status
 from explore_bt.types import OCCUPIED, OccupancyGrid, Pose2
 
@@ -59,6 +59,17 @@ def test_where_there_is_room_it_need_not_move_at_all(robot: FakeRobot) -> None:
     leaf.tick_once()
     assert (leaf.status, leaf.feedback_message) == (Status.SUCCESS, "there is room here")
     assert not robot.pilot.followed
+
+
+def test_what_only_the_scan_sees_leaves_no_room(robot: FakeRobot) -> None:
+    robot.grid = open_floor()
+    ranges = np.full(360, np.inf)
+    ranges[40] = 0.27
+    robot.latest_scan = full_circle_scan(ranges)
+    leaf = BackOut("out", robot, Blackboard(), {"at_least": 0.0})
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING
+    assert robot.pilot.followed[0].length_m == pytest.approx(0.5, abs=0.06)
 
 
 def test_without_room_it_goes_as_far_as_allowed(robot: FakeRobot) -> None:
