@@ -19,12 +19,15 @@ _LOOK_PERIOD_S = 1.0
 _WATCHED_M = 4.0
 _TIGHT_POSES_AHEAD = 2  # about 0.2 m: the gate's brake ends before the place itself
 
+_NOTHING_M2 = 0.02
+
 
 class DriveTo(Leaf):
     """Plans a path to the goal and follows it; plans anew when the path is cut or the robot is held.
 
     SUCCESS at the goal, or as soon as nothing new is to be seen from it (``until_seen``), or after some way
-    (``look_again``).
+    (``look_again``). A goal that promises less than ``until_seen`` is a scrap: once begun it is driven to, or
+    until nothing of it is left, for deciding anew would only trade it for the next scrap.
     FAILURE when no path is left; the planner's typed reason goes to ``failure``.
     """
 
@@ -77,7 +80,8 @@ class DriveTo(Leaf):
             return self._plan_after_hold(output.reason)
         if self._is_cut():
             return self._plan()
-        if self.look_again is not None and self.robot.distance_m - self._begun_m >= self.look_again:
+        driven_m = self.robot.distance_m - self._begun_m
+        if self.look_again is not None and driven_m >= self.look_again and not self._is_scrap:
             return self._stop_here("on the way")
         return Status.RUNNING
 
@@ -135,6 +139,10 @@ class DriveTo(Leaf):
         needed = min(radius, float(ahead[:, 2].min()))
         return bool(clearance_at(grid, ahead[:, :2], radius).min() < needed)
 
+    @property
+    def _is_scrap(self) -> bool:
+        return 0.0 < self.goal.expected_gain_m2 < self.until_seen
+
     def _is_seen(self) -> bool:
         if self.until_seen <= 0.0 or self.robot.now_s() < self._next_look_s:
             return False
@@ -145,7 +153,7 @@ class DriveTo(Leaf):
             self.robot.lidar_range_m,
             depth_m=math.inf if self.depth is None else self.depth,
         )
-        if area >= self.until_seen:
+        if area >= (_NOTHING_M2 if self._is_scrap else self.until_seen):
             return False
         self.say(f"seen from afar: only {area:.2f} m² would be new at the goal")
         return True

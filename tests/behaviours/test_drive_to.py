@@ -1,16 +1,19 @@
 import numpy as np
+import pytest
 
 from explore_bt.behaviours import DriveTo
 from explore_bt.errors import NoPath
 from explore_bt.interfaces import ControlStatus
 from explore_bt.testing.fake_robot import FakeRobot, open_floor
 from explore_bt.tree import Blackboard, Status
-from explore_bt.types import FREE, OCCUPIED, OccupancyGrid, Pose2, Waypoint
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2, Waypoint
+
+AHEAD = Waypoint(Pose2(3.0, 0.0, 0.0))
 
 
-def drive(robot: FakeRobot, goal: Pose2 = Pose2(3.0, 0.0, 0.0), **bindings: object) -> DriveTo:
+def drive(robot: FakeRobot, goal: Waypoint = AHEAD, **bindings: object) -> DriveTo:
     board = Blackboard()
-    board.write("goal", Waypoint(goal))
+    board.write("goal", goal)
     leaf = DriveTo("drive", robot, board, bindings)
     leaf.tick_once()
     return leaf
@@ -84,6 +87,19 @@ def test_a_goal_that_shows_nothing_new_any_more_is_not_driven_to_the_end() -> No
     assert leaf.status is Status.SUCCESS
     assert "seen from afar" in leaf.feedback_message
     assert leaf.blackboard["reached"].pose == robot.pose
+
+
+@pytest.mark.parametrize(("promise_m2", "goes_on"), [(0.2, True), (2.0, False)])
+def test_a_scrap_once_begun_is_driven_to(promise_m2: float, goes_on: bool) -> None:
+    """Some of the unknown is left to be seen, less than ``until_seen``, and the robot has driven a metre."""
+    cells = np.full((300, 300), FREE, dtype=np.int8)
+    cells[148:152, 172:174] = UNKNOWN
+    robot = FakeRobot(OccupancyGrid(cells, 0.1, (-15.0, -15.0)))
+    goal = Waypoint(Pose2(2.0, 0.0, 0.0), "view", expected_gain_m2=promise_m2)
+    leaf = drive(robot, goal, until_seen=0.3, look_again=1.0)
+    robot.time_s, robot.distance_m = 1.5, 1.1
+    leaf.tick_once()
+    assert (leaf.status is Status.RUNNING) is goes_on
 
 
 def test_a_drive_that_is_cut_off_holds_the_robot() -> None:
