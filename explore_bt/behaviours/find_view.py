@@ -23,6 +23,7 @@ from explore_bt.exploration import (
     order_views,
     sentences,
     travel_field,
+    visible_unknown_area,
     what_remains,
 )
 from explore_bt.tree import Input, Key, Leaf, Output, Status
@@ -101,6 +102,7 @@ class FindView(Leaf):
 
     def update(self) -> Status:
         """The best of the thinned places; where those show nothing of all places, at last of tight ones."""
+        self._note_look_in_vain()
         least_m = self.robot.least_margin_m
         passes = ((_MARGIN_M, False), (_MARGIN_M, True), (max(least_m, 0.0), True), (least_m, True))
         for margin_m, is_dense in dict.fromkeys(passes):
@@ -111,7 +113,7 @@ class FindView(Leaf):
                 view = self._best(chosen)
                 if math.dist(view.xy, self._here.xy) > _HERE_M:
                     return self._take(view, len(chosen.views))
-                self._give_up(view)
+                self._give_up(view.xy, view.gain_m2)
         return self._conclude(chosen)
 
     @property
@@ -201,9 +203,19 @@ class FindView(Leaf):
         )
         return Status.SUCCESS
 
-    def _give_up(self, view: View) -> None:
-        reason = f"still {view.gain_m2:.1f} m² unknown after looking from here"
-        self.given_up = (*self._tried(), GivenUp(view.xy, reason, was_seen=True))
+    def _note_look_in_vain(self) -> None:
+        """The goal was come to and still shows as much as it did: once left, it would call the robot back."""
+        goal: Waypoint | None = self.recall("goal", None)
+        if goal is None or math.dist(goal.position, self._here.xy) > _HERE_M:
+            return
+        grid, range_m = self.robot.view().grid, self.robot.lidar_range_m
+        area_m2 = visible_unknown_area(grid, goal.position, range_m, depth_m=self.depth)
+        if area_m2 >= self.min_gain:
+            self._give_up(goal.position, area_m2)
+
+    def _give_up(self, place: tuple[float, float], area_m2: float) -> None:
+        reason = f"still {area_m2:.1f} m² unknown after looking from here"
+        self.given_up = (*self._tried(), GivenUp(place, reason, was_seen=True))
 
     def _tried(self) -> tuple[GivenUp, ...]:
         return self.recall("given_up", ())
