@@ -19,7 +19,7 @@ from tests.drivers.ros_bags import FAMILIES, Messages
 UPSIDE_DOWN = (0.0, 1.0, 0.0, 0.0)  # w, x, y, z: half a turn about x
 POSITIONS = re.compile(
     r"^[^ ]+:\d+: |message \d+ of \d+|after message \d+|a message on /|cannot be opened as a ROS bag"
-    r"|no LaserScan|metadata"
+    r"|no LaserScan|metadata|expected a CARMEN log"
 )
 LEFT = (math.cos(math.pi / 4), 0.0, 0.0, math.sin(math.pi / 4))
 
