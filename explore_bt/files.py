@@ -1,4 +1,4 @@
-"""Files that are whole or not there at all."""
+"""Files that ship, and files that are whole or not there at all."""
 
 from __future__ import annotations
 
@@ -6,7 +6,13 @@ import os
 import tempfile
 from pathlib import Path
 
-__all__ = ["write_whole"]
+__all__ = ["missions_folder", "write_whole"]
+
+
+def missions_folder() -> Path:
+    """Where the missions that ship are: in the package of a wheel, beside it in a checkout."""
+    package = Path(__file__).parent
+    return package / "missions" if (package / "missions").is_dir() else package.parent / "missions"
 
 
 def write_whole(path: Path, data: bytes | str) -> Path:

@@ -9,28 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.behaviours.give_up_goal import GivenUp
-from explore_bt.exploration import (
-    Frontier,
-    find_frontiers,
-    nearest_reaching_cell,
-    open_tour,
-    sentences,
-    travel_field,
-    what_remains,
-)
-from explore_bt.tree import Input, Key, Leaf, Output, Status
+from explore_bt.behaviours.search import HERE_M, Search
+from explore_bt.exploration import Frontier, find_frontiers, nearest_reaching_cell, open_tour
+from explore_bt.tree import Input, Status
 from explore_bt.types import Pose2, Waypoint
-from explore_bt.units import Area, Length
+from explore_bt.units import Length
 
 __all__ = ["FindFrontier"]
 
-_HERE_M = 0.15
 _SAME_M = 0.5
 _MOST = 12
 _APART_M = 1e3
 
 
-class FindFrontier(Leaf):
+class FindFrontier(Search):
     """Picks a frontier and drives up to it, whatever could be seen from afar.
 
     ``order: nearest`` is Yamauchi, 1997: the nearest one that can be come to. ``order: tour`` takes the first
@@ -44,23 +36,17 @@ class FindFrontier(Leaf):
         Literal["nearest", "tour"], default="nearest", doc="the nearest, or the first of a tour"
     )
     min_size: Input[float] = Input(Length, default=0.3, ge=0.0, doc="smaller ones are leaks between beams")
-    min_gain: Input[float] = Input(Area, default=0.1, ge=0.01, doc="smaller patches of unknown are not named")
     within: Input[float] = Input(Length, default=1.0, ge=0.1, doc="how near the robot has to come to it")
-    goal: Output[Waypoint] = Output(Waypoint, default=Key("goal"), doc="the place, looking at the frontier")
-    given_up: Output[tuple[GivenUp, ...]] = Output(
-        tuple, default=Key("given_up"), doc="places not to try again"
-    )
-    left_open: Output[tuple[str, ...]] = Output(
-        tuple, default=Key("left_open"), doc="what was not explored and why, one sentence each"
-    )
-    reason: Output[str] = Output(str, default=Key("reason"), doc="why the exploration is over")
 
     def update(self) -> Status:
         """Sort out the frontiers that can be come to, and pick one."""
-        travel_m = self._travel_m(self._here.xy)
+        travel_m = self._way_m(self.here().xy)
         open_ones = self._reachable(travel_m)
         if not open_ones:
-            return self._conclude(travel_m)
+            return self.conclude(
+                f"no reachable frontier of {self.min_size:.2f} m or more is left",
+                ((place.looks_at or place.position, place.reason) for place in self.tried()),
+            )
         place, frontier = self._pick(open_ones, travel_m)
         x, y = place
         looks_at = frontier.centroid
@@ -69,28 +55,21 @@ class FindFrontier(Leaf):
         self.say(f"{len(open_ones)} open frontier{'' if len(open_ones) == 1 else 's'}; → ({x:.1f}, {y:.1f})")
         return Status.SUCCESS
 
-    @property
-    def _here(self) -> Pose2:
-        return self.robot.estimate().T_map_base
-
-    def _travel_m(self, xy: tuple[float, float]) -> NDArray[np.float32]:
-        view = self.robot.view()
-        at = np.array([view.grid.cell_of(*xy)])
-        radius_m = self.robot.footprint_radius_m + max(self.robot.least_margin_m, 0.0)
-        return travel_field(view.clearance_m, at, radius_m, view.grid.resolution_m)
+    def _way_m(self, xy: tuple[float, float]) -> NDArray[np.float32]:
+        return self.travel_m(xy, max(self.robot.least_margin_m, 0.0))
 
     def _reachable(self, travel_m: NDArray[np.float32]) -> list[tuple[tuple[float, float], Frontier]]:
         """Places and their frontiers; a frontier that the robot already stands at keeps its secret."""
-        grid, here = self.robot.view().grid, self._here
+        grid, here = self.robot.view().grid, self.here()
         found = []
         for frontier in find_frontiers(grid, self.min_size):
             cell = nearest_reaching_cell(travel_m, frontier.middle_cell, self.within / grid.resolution_m)
             if cell is None or self._is_given_up(frontier):
                 continue
             place = grid.center_of(*cell)
-            if math.dist(place, here.xy) <= _HERE_M:
-                gone = GivenUp(place, "still unknown after looking from here", frontier.centroid, True)
-                self.given_up = (*self._tried(), gone)
+            if math.dist(place, here.xy) <= HERE_M:
+                reason = "still unknown after looking from here"
+                self.give_up(GivenUp(place, reason, frontier.centroid, was_seen=True))
                 continue
             found.append((place, frontier))
         return found
@@ -103,30 +82,12 @@ class FindFrontier(Leaf):
         if self.order == "nearest":
             return open_ones[0]
         chosen = open_ones[:_MOST]
-        fields = [travel_m, *(self._travel_m(place) for place, _ in chosen)]
-        cells = grid.cells_of(np.array([self._here.xy, *(place for place, _ in chosen)]))
+        fields = [travel_m, *(self._way_m(place) for place, _ in chosen)]
+        cells = grid.cells_of(np.array([self.here().xy, *(place for place, _ in chosen)]))
         between = np.array([field[tuple(cells.T)] for field in fields], dtype=np.float64)
         tour = open_tour(np.where(np.isfinite(between), between, _APART_M))
         return chosen[int(tour[1]) - 1]
 
     def _is_given_up(self, frontier: Frontier) -> bool:
-        looks = [place.looks_at for place in self._tried() if place.looks_at is not None]
+        looks = [place.looks_at for place in self.tried() if place.looks_at is not None]
         return any(math.dist(look, frontier.centroid) < _SAME_M for look in looks)
-
-    def _tried(self) -> tuple[GivenUp, ...]:
-        return self.recall("given_up", ())
-
-    def _conclude(self, travel_m: NDArray[np.float32]) -> Status:
-        view = self.robot.view()
-        left = what_remains(
-            view.grid,
-            view.clearance_m,
-            travel_m,
-            self.robot.footprint_radius_m,
-            min_gain_m2=self.min_gain,
-        )
-        failed = ((place.looks_at or place.position, place.reason) for place in self._tried())
-        self.left_open = sentences((*left, *failed))
-        self.reason = f"no reachable frontier of {self.min_size:.2f} m or more is left"
-        self.say(self.reason)
-        return Status.FAILURE

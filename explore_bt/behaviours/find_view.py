@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.behaviours.give_up_goal import GivenUp
+from explore_bt.behaviours.search import HERE_M, Search
 from explore_bt.exploration import (
     HalfPlaneHistory,
     Outlooks,
@@ -21,24 +23,20 @@ from explore_bt.exploration import (
     next_waypoint,
     order_by_safety,
     order_views,
-    sentences,
-    travel_field,
     visible_unknown_area,
-    what_remains,
 )
-from explore_bt.tree import Input, Key, Leaf, Output, Status
+from explore_bt.tree import Input, Key, Status
 from explore_bt.types import Pose2, Waypoint, wrap_angle
-from explore_bt.units import Area, Length
+from explore_bt.units import Length
 
 __all__ = ["FindView"]
 
-_HERE_M = 0.15
 _MARGIN_M = 0.02
 _TRIES = 20
 _SCRAP_M2 = 0.5
 
 
-class FindView(Leaf):
+class FindView(Search):
     """Picks the next place to look from among the safe headings' waypoints and the skeleton's places.
 
     The paper's rules go on: headings into free sectors give waypoints (1–3), the half-plane of the last
@@ -56,7 +54,6 @@ class FindView(Leaf):
     rank: Input[str] = Input(
         Literal["tour", "gain"], default="tour", doc="a tour through all, or the best by itself"
     )
-    min_gain: Input[float] = Input(Area, default=0.1, ge=0.01, doc="new area that is worth a drive")
     depth: Input[float] = Input(
         Length, default=1.5, ge=0.1, doc="how far into the unknown an opening is believed"
     )
@@ -91,30 +88,26 @@ class FindView(Leaf):
         initial=HalfPlaneHistory(),
         doc="the half-planes of the waypoints",
     )
-    goal: Output[Waypoint] = Output(Waypoint, default=Key("goal"), doc="the place")
-    given_up: Output[tuple[GivenUp, ...]] = Output(
-        tuple, default=Key("given_up"), doc="places not to try again"
-    )
-    left_open: Output[tuple[str, ...]] = Output(
-        tuple, default=Key("left_open"), doc="what was not explored and why, one sentence each"
-    )
-    reason: Output[str] = Output(str, default=Key("reason"), doc="why the exploration is over")
 
     def update(self) -> Status:
         """The best of the thinned places; where those show nothing of all places, at last of tight ones."""
         self._note_look_in_vain()
         least_m = self.robot.least_margin_m
+        more = self._further_places()
         passes = ((_MARGIN_M, False), (_MARGIN_M, True), (max(least_m, 0.0), True), (least_m, True))
         for margin_m, is_dense in dict.fromkeys(passes):
+            places = self._places(margin_m, is_dense, more)
             for _ in range(_TRIES):
-                chosen = self._choose(margin_m, is_dense)
+                chosen = self._choose(places)
                 if self._is_too_little(chosen):
                     break
                 view = self._best(chosen)
-                if math.dist(view.xy, self._here.xy) > _HERE_M:
+                if math.dist(view.xy, self.here().xy) > HERE_M:
                     return self._take(view, len(chosen.views))
-                self._give_up(view.xy, view.gain_m2)
-        return self._conclude(chosen)
+                self._give_up_look(view.xy, view.gain_m2)
+        scraps = ((view.xy, "shows too little to be worth the way") for view in chosen.views)
+        reason = f"no reachable place shows {self.min_gain:.2f} m² of new area or more"
+        return self.conclude(reason, (*self._still_unseen(), *scraps))
 
     @property
     def _outlooks(self) -> Outlooks:
@@ -124,31 +117,37 @@ class FindView(Leaf):
         return self._seen
 
     @property
-    def _here(self) -> Pose2:
-        return self.robot.estimate().T_map_base
-
-    @property
     def _taste(self) -> TourTaste:
         return TourTaste(
             self.min_gain, self.depth, keep_m=self.keep, haste=self.haste, scrap_weight=self.scrap_weight
         )
 
-    def _choose(self, margin_m: float, is_dense: bool) -> ViewSet:
-        view, here = self.robot.view(), self._here
-        radius_m = self.robot.footprint_radius_m + margin_m
-        at = np.array([view.grid.cell_of(*here.xy)])
-        travel_m = travel_field(view.clearance_m, at, radius_m, view.grid.resolution_m)
-        keep_xy = self._present_goal
-        places = ViewPlaces(
+    def _further_places(self) -> NDArray[np.float64]:
+        """(N, 2) the safe headings' waypoints and the present goal."""
+        goal = self._present_goal
+        return np.array([*self._safe_waypoints(), *([goal] if goal else [])]).reshape(-1, 2)
+
+    def _places(self, margin_m: float, is_dense: bool, more: NDArray[np.float64]) -> ViewPlaces:
+        view = self.robot.view()
+        return ViewPlaces(
             view.grid,
             view.clearance_m,
-            travel_m,
-            radius_m=radius_m,
+            self.travel_m(self.here().xy, margin_m),
+            radius_m=self.robot.footprint_radius_m + margin_m,
             is_dense=is_dense,
-            more=np.array([*self._safe_waypoints(), *([keep_xy] if keep_xy else [])]).reshape(-1, 2),
-            tried=np.array([place.position for place in self._tried()]).reshape(-1, 2),
+            more=more,
         )
-        return choose_views(places, self._outlooks, here.xy, self.robot.lidar_range_m, self._taste, keep_xy)
+
+    def _choose(self, places: ViewPlaces) -> ViewSet:
+        tried = np.array([place.position for place in self.tried()]).reshape(-1, 2)
+        return choose_views(
+            places.without(tried),
+            self._outlooks,
+            self.here().xy,
+            self.robot.lidar_range_m,
+            self._taste,
+            self._present_goal,
+        )
 
     @property
     def _present_goal(self) -> tuple[float, float] | None:
@@ -179,12 +178,12 @@ class FindView(Leaf):
             margin_m=_MARGIN_M,
         )
         return [
-            next_waypoint(self._here, sector, self.stride).position for sector in order_by_safety(sectors)
+            next_waypoint(self.here(), sector, self.stride).position for sector in order_by_safety(sectors)
         ]
 
     def _first_leg_m(self, view: View) -> float:
         """What the paper's rules have against going there next, as metres."""
-        here = self._here
+        here = self.here()
         bearing = math.atan2(view.xy[1] - here.y, view.xy[0] - here.x)
         turn = self.turn_cost * 0.5 * (1.0 - math.cos(wrap_angle(bearing - here.yaw_rad)))
         behind = not self.history.contains(view.xy, 1)
@@ -194,7 +193,7 @@ class FindView(Leaf):
         return view.gain_m2 * math.exp(-self.decay * view.travel_m)
 
     def _take(self, view: View, count: int) -> Status:
-        (x, y), here = view.xy, self._here
+        (x, y), here = view.xy, self.here()
         pose = Pose2(x, y, math.atan2(y - here.y, x - here.x))
         self.goal = Waypoint(pose, "view", view.gain_m2)
         self.say(
@@ -204,31 +203,23 @@ class FindView(Leaf):
         return Status.SUCCESS
 
     def _note_look_in_vain(self) -> None:
-        """The goal was come to and still shows as much as it did: once left, it would call the robot back."""
-        goal: Waypoint | None = self.recall("goal", None)
-        if goal is None or math.dist(goal.position, self._here.xy) > _HERE_M:
+        """The goal was come to and still shows enough for one: once left, it would call the robot back."""
+        goal = self._present_goal
+        if goal is None or math.dist(goal, self.here().xy) > HERE_M:
             return
-        grid, range_m = self.robot.view().grid, self.robot.lidar_range_m
-        area_m2 = visible_unknown_area(grid, goal.position, range_m, depth_m=self.depth)
+        area_m2 = self._area_m2(goal)
         if area_m2 >= self.min_gain:
-            self._give_up(goal.position, area_m2)
+            self._give_up_look(goal, area_m2)
 
-    def _give_up(self, place: tuple[float, float], area_m2: float) -> None:
-        reason = f"still {area_m2:.1f} m² unknown after looking from here"
-        self.given_up = (*self._tried(), GivenUp(place, reason, was_seen=True))
+    def _give_up_look(self, place: tuple[float, float], area_m2: float) -> None:
+        self.give_up(GivenUp(place, f"still {area_m2:.1f} m² unknown after looking from here", was_seen=True))
 
-    def _tried(self) -> tuple[GivenUp, ...]:
-        return self.recall("given_up", ())
+    def _still_unseen(self) -> Iterator[tuple[tuple[float, float], str]]:
+        """Places given up that would still show something; what others showed since is no loss."""
+        for place in self.tried():
+            if self._area_m2(place.position) >= self.min_gain:
+                yield place.position, place.reason
 
-    def _conclude(self, chosen: ViewSet) -> Status:
-        view = self.robot.view()
-        radius_m = self.robot.footprint_radius_m
-        at: NDArray[np.int64] = np.array([view.grid.cell_of(*self._here.xy)])
-        travel_m = travel_field(view.clearance_m, at, radius_m, view.grid.resolution_m)
-        left = what_remains(view.grid, view.clearance_m, travel_m, radius_m, min_gain_m2=self.min_gain)
-        failed = ((place.position, place.reason) for place in self._tried())
-        scraps = ((scrap.xy, "shows too little to be worth the way") for scrap in chosen.views)
-        self.left_open = sentences((*left, *failed, *scraps))
-        self.reason = f"no reachable place shows {self.min_gain:.2f} m² of new area or more"
-        self.say(self.reason)
-        return Status.FAILURE
+    def _area_m2(self, place: tuple[float, float]) -> float:
+        grid, range_m = self.robot.view().grid, self.robot.lidar_range_m
+        return visible_unknown_area(grid, place, range_m, depth_m=self.depth)

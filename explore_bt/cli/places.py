@@ -7,17 +7,15 @@ import os
 from datetime import datetime
 from pathlib import Path
 
-import explore_bt
 from explore_bt.errors import UserError
+from explore_bt.files import missions_folder
 
 __all__ = ["find_mission", "new_run_folder", "shipped_missions"]
 
 
 def shipped_missions() -> dict[str, Path]:
-    """The missions that come with explore-bt, by bare name: packaged in a wheel, beside it in a checkout."""
-    package = Path(explore_bt.__file__).parent
-    folder = package / "missions" if (package / "missions").is_dir() else package.parent / "missions"
-    return {path.stem: path for path in sorted(folder.glob("[0-9]*.yaml"))}
+    """The missions that come with explore-bt, by bare name."""
+    return {path.stem: path for path in sorted(missions_folder().glob("[0-9]*.yaml"))}
 
 
 def find_mission(text: str) -> Path:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from explore_bt.exploration.arguments import require_positive
 from explore_bt.exploration.kernel_input import read_only
+from explore_bt.exploration.ray_steps import ray_steps
 from explore_bt.types import OCCUPIED, UNKNOWN, OccupancyGrid
 
 __all__ = ["gain_many", "visible_unknown_area"]
@@ -23,15 +24,10 @@ def _see_along(cells, seen, mark, u, v, du, dv, corner, reach, depth):  # type: 
     """Unknown cells newly marked along one ray.
 
     Lengths count in cells; (u, v) and (du, dv) are the eye and the ray's unit vector in columns and rows;
-    ``corner`` is the grid's cell at seen[0, 0]. After Amanatides & Woo, 1987.
+    ``corner`` is the grid's cell at seen[0, 0].
     """
     rows, cols = cells.shape
-    row, col = math.floor(v), math.floor(u)
-    step_row, step_col = (1 if dv > 0.0 else -1), (1 if du > 0.0 else -1)
-    per_row = abs(1.0 / dv) if dv != 0.0 else math.inf
-    per_col = abs(1.0 / du) if du != 0.0 else math.inf
-    next_row = ((row + 1 - v) if dv > 0.0 else (v - row)) * per_row if dv != 0.0 else math.inf
-    next_col = ((col + 1 - u) if du > 0.0 else (u - col)) * per_col if du != 0.0 else math.inf
+    row, col, step_row, step_col, per_row, per_col, next_row, next_col = ray_steps(u, v, du, dv)
     entry, passed, found = 0.0, 0.0, 0
     while entry <= reach:
         leave = min(next_row, next_col)

@@ -10,32 +10,22 @@ from numpy.typing import NDArray
 
 from explore_bt.exploration.arguments import require_positive
 from explore_bt.exploration.kernel_input import read_only
+from explore_bt.exploration.ray_steps import ray_steps
 from explore_bt.types import FREE, OccupancyGrid, Pose2, Scan2D
 
 __all__ = ["scan_of_grid"]
 
 _NEAREST_M = 0.01
-_ALONG = 1e-12
-"""A ray that leaves its axis by less never leaves its row."""
 
 
 @njit(cache=True)
 def _cast(cells, u, v, directions, reach):  # type: ignore[no-untyped-def]  # numba kernel
-    """Distance in cells from (u, v), column and row, to the first cell that is not free; inf beyond reach.
-
-    After Amanatides & Woo, 1987.
-    """
+    """Distance in cells from (u, v), column and row, to the first cell that is not free; inf beyond reach."""
     rows, cols = cells.shape
     out = np.full(directions.size, np.inf)
     for i in range(directions.size):
         du, dv = math.cos(directions[i]), math.sin(directions[i])
-        du, dv = (0.0 if abs(du) < _ALONG else du), (0.0 if abs(dv) < _ALONG else dv)
-        row, col = math.floor(v), math.floor(u)
-        step_row, step_col = (1 if dv > 0.0 else -1), (1 if du > 0.0 else -1)
-        per_row = abs(1.0 / dv) if dv != 0.0 else math.inf
-        per_col = abs(1.0 / du) if du != 0.0 else math.inf
-        next_row = ((row + 1 - v) if dv > 0.0 else (v - row)) * per_row if dv != 0.0 else math.inf
-        next_col = ((col + 1 - u) if du > 0.0 else (u - col)) * per_col if du != 0.0 else math.inf
+        row, col, step_row, step_col, per_row, per_col, next_row, next_col = ray_steps(u, v, du, dv)
         entry = 0.0
         while entry <= reach:
             if not (0 <= row < rows and 0 <= col < cols) or cells[row, col] != FREE:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
-from functools import cached_property
 
 import cv2
 import numpy as np
@@ -61,7 +61,6 @@ class ViewPlaces:
         radius_m: float,
         is_dense: bool = False,
         more: NDArray[np.float64] | None = None,
-        tried: NDArray[np.float64] | None = None,
     ) -> None:
         """Choose the places.
 
@@ -72,7 +71,6 @@ class ViewPlaces:
             radius_m: r that ``travel_m`` was made with.
             is_dense: squares of 0.3 m instead of 0.6 m.
             more: (N, 2) metres, further places; those out of reach are left out.
-            tried: (M, 2) metres; nothing within 0.3 m of these is a place.
         """
         self.grid = grid
         self._is_dense = is_dense
@@ -85,12 +83,16 @@ class ViewPlaces:
             inside = ((extra >= 0) & (extra < grid.shape)).all(axis=1)
             extra = extra[inside]
             cells = np.concatenate((cells, extra[self._room[tuple(extra.T)] > 0.0]))
-        if tried is not None and len(tried) and len(cells):
-            apart = grid.centers_of(cells)[:, None] - tried[None]
-            cells = cells[(np.hypot(apart[..., 0], apart[..., 1]) > _SAME_M).all(axis=1)]
         self.cells: NDArray[np.int64] = cells
 
-    @cached_property
+    def without(self, spots: NDArray[np.float64]) -> ViewPlaces:
+        """The same places but those within 0.3 m of one of ``spots``, (M, 2) metres, ``map`` frame."""
+        apart = self.xy[:, None] - spots[None]
+        others = copy(self)
+        others.cells = self.cells[(np.hypot(apart[..., 0], apart[..., 1]) > _SAME_M).all(axis=1)]
+        return others
+
+    @property
     def xy(self) -> NDArray[np.float64]:
         """(N, 2) metres, ``map`` frame."""
         return self.grid.centers_of(self.cells)

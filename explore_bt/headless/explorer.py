@@ -12,7 +12,6 @@ from explore_bt.headless.decision import Decision
 from explore_bt.headless.explorer_robot import ExplorerRobot
 from explore_bt.headless.grid_robot import GridRobot
 from explore_bt.headless.strategies import make_planner, read_strategy
-from explore_bt.interfaces import RobotContext
 from explore_bt.plugin import load_plugins
 from explore_bt.types import OccupancyGrid, Pose2
 
@@ -49,7 +48,7 @@ class Explorer:
         self._radius_m, self._range_m = robot_radius_m, lidar_range_m
         self._registry = load_plugins().registry
         self._tree = read_strategy(strategy, self._registry)
-        make_planner(self._registry).setup(RobotContext(footprint_radius_m=robot_radius_m))
+        make_planner(self._registry, robot_radius_m)
         warm_up()
         self._robots: dict[str, ExplorerRobot] = {}
 
@@ -76,8 +75,7 @@ class Explorer:
 
     def _robot(self, name: str) -> ExplorerRobot:
         if name not in self._robots:
-            planner = make_planner(self._registry)  # one each: it remembers its last route
-            planner.setup(RobotContext(footprint_radius_m=self._radius_m))
+            planner = make_planner(self._registry, self._radius_m)
             body = GridRobot(name, planner, self._radius_m, self._range_m)
             self._robots[name] = ExplorerRobot(body, self._tree)
         return self._robots[name]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import explore_bt
 from explore_bt.errors import UserError
-from explore_bt.interfaces import Planner
+from explore_bt.files import missions_folder
+from explore_bt.interfaces import Planner, RobotContext
 from explore_bt.mission import NodeSpec, load_tree
 from explore_bt.plugin import Registry
 
@@ -29,7 +29,7 @@ def read_strategy(strategy: str | Path, registry: Registry) -> NodeSpec:
     """
     path = Path(strategy)
     if path.suffix not in (".yaml", ".yml"):
-        path = _folder() / f"{strategy}.yaml"
+        path = missions_folder() / "trees" / f"{strategy}.yaml"
     if not path.is_file():
         raise UserError(
             f"strategy: there is no {strategy}; expected one of {', '.join(STRATEGIES)}, or a file of trees"
@@ -37,13 +37,9 @@ def read_strategy(strategy: str | Path, registry: Registry) -> NodeSpec:
     return load_tree(path, (f"explore_{path.stem}", path.stem), registry)
 
 
-def make_planner(registry: Registry) -> Planner:
-    """The skeleton planner with its defaults; not set up yet."""
-    planner: type[Planner] = registry.get("planner", "skeleton")
-    return planner(planner.Options())
-
-
-def _folder() -> Path:
-    package = Path(explore_bt.__file__).parent
-    missions = package / "missions" if (package / "missions").is_dir() else package.parent / "missions"
-    return missions / "trees"
+def make_planner(registry: Registry, footprint_radius_m: float) -> Planner:
+    """The skeleton planner with its defaults, set up; one for each robot: it remembers its last route."""
+    cls: type[Planner] = registry.get("planner", "skeleton")
+    planner = cls(cls.Options())
+    planner.setup(RobotContext(footprint_radius_m=footprint_radius_m))
+    return planner

@@ -1,8 +1,10 @@
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from explore_bt.behaviours import FindFrontier, FindView
+from explore_bt.behaviours import FindFrontier, FindView, GivenUp
 from explore_bt.testing.fake_robot import FakeRobot
 from explore_bt.tree import Blackboard, Leaf, Status
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
@@ -61,3 +63,35 @@ def test_the_nearest_frontier_is_driven_up_to() -> None:
     leaf.tick_once()
     assert leaf.status is Status.SUCCESS
     assert leaf.blackboard["goal"].position[0] < 0.5
+
+
+def test_a_goal_that_still_shows_as_much_once_it_is_reached_is_not_chosen_again() -> None:
+    grid, blackboard = hall(open_left=False), Blackboard()
+    robot = FakeRobot(grid, HERE)
+    leaf = FindView("find", robot, blackboard, {})
+    leaf.tick_once()
+    first = blackboard["goal"].position
+    robot.pose = Pose2(*first, 0.0)
+    leaf.tick_once()
+    assert [place.was_seen for place in blackboard["given_up"] if place.position == first] == [True]
+    robot.pose = HERE
+    leaf.tick_once()
+    assert leaf.status is Status.FAILURE or math.dist(blackboard["goal"].position, first) > 0.3
+
+
+def test_places_looked_from_in_vain_are_named_only_if_their_area_stayed_unknown() -> None:
+    whole = hall(open_left=False, open_right=False)
+    cells = whole.cells.copy()
+    cells[20:24, 76:80] = UNKNOWN
+    everywhere = tuple(
+        GivenUp((float(x), float(y)), "still unknown after looking from here", was_seen=True)
+        for x in np.arange(0.1, 6.0, 0.3)
+        for y in np.arange(0.2, 4.0, 0.3)
+    )
+    for grid, is_named in ((OccupancyGrid(cells, 0.1, (-2.0, 0.0)), True), (whole, False)):
+        blackboard = Blackboard()
+        blackboard.write("given_up", everywhere)
+        leaf = FindView("find", FakeRobot(grid, HERE), blackboard, {})
+        leaf.tick_once()
+        assert leaf.status is Status.FAILURE
+        assert any("after looking" in each for each in blackboard["left_open"]) is is_named
