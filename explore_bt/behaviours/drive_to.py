@@ -20,14 +20,16 @@ _WATCHED_M = 4.0
 _TIGHT_POSES_AHEAD = 2  # about 0.2 m: the gate's brake ends before the place itself
 
 _NOTHING_M2 = 0.02
+_DETOUR_M = 5.0
 
 
 class DriveTo(Leaf):
     """Plans a path to the goal and follows it; plans anew when the path is cut or the robot is held.
 
     SUCCESS at the goal, or as soon as nothing new is to be seen from it (``until_seen``), or after some way
-    (``look_again``). A goal that promises less than ``until_seen`` is a scrap: once begun it is driven to, or
-    until nothing of it is left, for deciding anew would only trade it for the next scrap.
+    (``look_again``; then also where the way is cut and the one around is 5 m longer). A goal that promises
+    less than ``until_seen`` is a scrap: once begun it is driven to, or until nothing of it is left, for
+    deciding anew would only trade it for the next scrap.
     FAILURE when no path is left; the planner's typed reason goes to ``failure``.
     """
 
@@ -79,7 +81,7 @@ class DriveTo(Leaf):
         if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:
             return self._plan_after_hold(output.reason)
         if self._is_cut():
-            return self._plan()
+            return self._plan_around()
         driven_m = self.robot.distance_m - self._begun_m
         if self.look_again is not None and driven_m >= self.look_again and not self._is_scrap:
             return self._stop_here("on the way")
@@ -108,6 +110,17 @@ class DriveTo(Leaf):
             f"to ({x:.1f}, {y:.1f}): {self._path.length_m:.1f} m, closest {self._path.min_clearance_m:.2f} m"
         )
         return Status.RUNNING
+
+    def _plan_around(self) -> Status:
+        """Another plan; where it has become a detour the tree decides anew, if that is asked for."""
+        assert self._path is not None
+        nearest = _nearest_pose(self._path, self.robot.estimate().T_map_base)
+        left_m = float(way_along(self._path.poses[nearest:])[-1])
+        status = self._plan()
+        more_m = self._path.length_m - left_m
+        if status is Status.RUNNING and self.look_again is not None and more_m > _DETOUR_M:
+            return self._stop_here("before a detour")
+        return status
 
     def _plan_after_hold(self, reason: str) -> Status:
         """Another plan; from the second hold on without the place ahead, which is then too tight."""
@@ -159,10 +172,14 @@ class DriveTo(Leaf):
         return True
 
 
+def _nearest_pose(path: Path, here: Pose2) -> int:
+    offsets = path.poses[:, :2] - np.array(here.xy)
+    return int(np.argmin(np.einsum("ij,ij->i", offsets, offsets)))
+
+
 def _ahead(path: Path, here: Pose2) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     """(N, 3) x, y and planned clearance of the poses within the next metres from the nearest one on."""
-    offsets = path.poses[:, :2] - np.array(here.xy)
-    nearest = int(np.argmin(np.einsum("ij,ij->i", offsets, offsets)))
+    nearest = _nearest_pose(path, here)
     along_m = way_along(path.poses[nearest:])
     watched = slice(nearest, nearest + int(np.searchsorted(along_m, _WATCHED_M, side="right")))
     return np.column_stack((path.poses[watched, :2], path.clearance_m[watched]))

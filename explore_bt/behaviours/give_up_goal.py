@@ -16,12 +16,14 @@ class GivenUp:
 
     Attributes:
         was_seen: whether the robot looked from there, in vain; else it never got there.
+        gain_m2: new floor that was expected there; 0 where nobody asked.
     """
 
     position: tuple[float, float]
     reason: str
     looks_at: tuple[float, float] | None = None
     was_seen: bool = False
+    gain_m2: float = 0.0
 
 
 class GiveUpGoal(Leaf):
@@ -36,7 +38,7 @@ class GiveUpGoal(Leaf):
     def update(self) -> Status:
         """Append to the memory."""
         x, y = self.goal.position
-        place = GivenUp((x, y), self.failure, self.goal.looks_at)
+        place = GivenUp((x, y), self.failure, self.goal.looks_at, gain_m2=self.goal.expected_gain_m2)
         self.given_up = (*self.recall("given_up", ()), place)
         self.say(f"({x:.1f}, {y:.1f}) is given up: {self.failure}")
         return Status.SUCCESS

@@ -94,8 +94,6 @@ class GridRobot:
         """Close a place where the caller got no farther."""
         self._tight.add(position)
 
-    def forget_avoided(self) -> int:
-        """Open all such places again; how many there were."""
-        count = len(self._tight)
-        self._tight.forget()
-        return count
+    def reopen(self, chances: int) -> int:
+        """Open such places again, unless that was done ``chances`` times before; how many."""
+        return self._tight.reopen(chances)

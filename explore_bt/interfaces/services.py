@@ -109,5 +109,5 @@ class RobotServices(Protocol):
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place (x, y, metres, ``map`` frame) that proved too tight: plans and maps shun it."""
 
-    def forget_avoided(self) -> int:
-        """Open all such places again; how many there were."""
+    def reopen(self, chances: int) -> int:
+        """Open such places again, unless that was done ``chances`` times before; how many."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -11,9 +10,7 @@ import numpy as np
 
 from explore_bt.errors import (
     ComponentFailure,
-    NoPath,
     PlanningFailure,
-    StartBlocked,
     UserError,
 )
 from explore_bt.exploration import warm_up
@@ -28,6 +25,7 @@ from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
+from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tight_places import TightPlaces
@@ -37,8 +35,6 @@ from explore_bt.types import Estimate, Health, Measurement, OccupancyGrid, Path,
 __all__ = ["Robot"]
 
 DEFAULT_LIDAR_RANGE_M = 5.0
-SQUEEZES_M = (0.03, 0.05)
-"""How much too narrow a passage may be drawn and still be tried, when no other way is left."""
 REASON_KEY = "reason"
 """Blackboard entry in which a tree may say why it ended."""
 
@@ -163,16 +159,11 @@ class Robot:
             PlanningFailure: the planner's typed no.
             ComponentFailure: the planner broke down.
         """
+        straight_m = self.estimate().T_map_base.distance_to(goal)
         try:
-            try:
-                return self._plan(goal, self.footprint_radius_m)
-            except (NoPath, StartBlocked) as refusal:
-                # the map counts an obstacle as filling its cell, and draws walls a cell too thick at times;
-                # where that closes the only way, the safety gate, which is finer, decides on the spot
-                for squeeze_m in SQUEEZES_M:
-                    with contextlib.suppress(PlanningFailure):
-                        return self._plan(goal, self.footprint_radius_m - squeeze_m)
-                raise refusal
+            return plan_or_squeeze(
+                lambda radius_m: self._plan(goal, radius_m), self.footprint_radius_m, straight_m
+            )
         except (PlanningFailure, UserError):
             raise
         except Exception as error:
@@ -205,11 +196,9 @@ class Robot:
         x, y = position
         self.tell("warning", "tight place", f"({x:.2f}, {y:.2f}) is closed: the gate held the robot there")
 
-    def forget_avoided(self) -> int:
-        """Open all such places again; how many there were."""
-        count = len(self._tight)
-        self._tight.forget()
-        return count
+    def reopen(self, chances: int) -> int:
+        """Open such places again, unless that was done ``chances`` times before; how many."""
+        return self._tight.reopen(chances)
 
     # --- what the runner calls, in this order, every control period -----------------------------------
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from explore_bt.types import OCCUPIED, OccupancyGrid
 
 __all__ = ["TightPlaces"]
+
+_SAME_M = 0.3
 
 
 class TightPlaces:
@@ -18,6 +21,7 @@ class TightPlaces:
 
     def __init__(self) -> None:
         self._positions: list[tuple[float, float]] = []
+        self._opened: list[tuple[float, float]] = []
         self._marked: OccupancyGrid | None = None
         self._source: OccupancyGrid | None = None
 
@@ -26,13 +30,16 @@ class TightPlaces:
         self._positions.append(position)
         self._source = None
 
-    def forget(self) -> None:
-        """Open all of them again."""
-        self._positions.clear()
+    def reopen(self, chances: int) -> int:
+        """Open those again that were not yet opened ``chances`` times, within 0.3 m; how many that were."""
+        again = [place for place in self._positions if self._times_opened(place) < chances]
+        self._positions = [place for place in self._positions if place not in again]
+        self._opened += again
         self._source = None
+        return len(again)
 
-    def __len__(self) -> int:
-        return len(self._positions)
+    def _times_opened(self, place: tuple[float, float]) -> int:
+        return sum(math.dist(place, other) <= _SAME_M for other in self._opened)
 
     def mark(self, grid: OccupancyGrid) -> OccupancyGrid:
         """The grid with every tight place occupied; the grid itself where there is none."""

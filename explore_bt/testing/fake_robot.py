@@ -81,8 +81,8 @@ class FakeRobot:
         """Remember it in ``avoided``."""
         self.avoided.append(position)
 
-    def forget_avoided(self) -> int:
-        """Empty ``avoided``."""
+    def reopen(self, chances: int) -> int:  # noqa: ARG002  # a fake has no memory of chances
+        """Empty ``avoided``, whatever the chances."""
         count = len(self.avoided)
         self.avoided.clear()
         return count

@@ -6,7 +6,7 @@ from explore_bt.errors import NoPath
 from explore_bt.interfaces import ControlStatus
 from explore_bt.testing.fake_robot import FakeRobot, open_floor
 from explore_bt.tree import Blackboard, Status
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2, Waypoint
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Path, Pose2, Waypoint
 
 AHEAD = Waypoint(Pose2(3.0, 0.0, 0.0))
 
@@ -120,3 +120,17 @@ def test_a_drive_that_is_to_look_again_ends_after_so_much_way() -> None:
     assert leaf.status is Status.SUCCESS
     assert leaf.blackboard["reached"].pose == robot.pose
     assert robot.pilot.holds == 0
+
+
+@pytest.mark.parametrize(("look_again", "status"), [(1.0, Status.SUCCESS), (None, Status.RUNNING)])
+def test_a_cut_way_with_a_long_one_around_lets_the_tree_decide_anew(
+    look_again: float | None, status: Status
+) -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot, look_again=look_again)
+    robot.plan = lambda goal: Path(np.array([[0, 0, 0], [4, 4, 0], [*goal.xy, 0]], float), np.ones(3))
+    cells = robot.grid.cells.copy()
+    cells[robot.grid.cell_of(2.0, 0.0)] = OCCUPIED
+    robot.grid = OccupancyGrid(cells, robot.grid.resolution_m, robot.grid.origin_xy, revision=1)
+    leaf.tick_once()
+    assert leaf.status is status

@@ -144,25 +144,26 @@ def test_a_lost_slam_is_waited_for_and_then_given_up(robot: FakeRobot, board: Bl
     assert "few inliers" in leaf.feedback_message
 
 
-def test_tight_places_and_unreached_goals_are_taken_back_as_often_as_allowed(
-    robot: FakeRobot, board: Blackboard
-) -> None:
-    leaf = TakeBack("take back", robot, board, {"times": 2})
+def test_an_unreached_goal_is_taken_back_as_often_as_allowed(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = TakeBack("take back", robot, board, {"chances": 2})
     leaf.tick_once()
     assert leaf.status is Status.FAILURE  # there was nothing
-    seen = GivenUp((2.0, 2.0), "still 0.3 m² unknown", was_seen=True)
     statuses = []
-    for _ in range(3):
-        robot.avoid((1.0, 1.0))
-        board.write("given_up", (GivenUp((1.0, 1.0), "no_path"), seen))
+    for x in (1.0, 1.1, 1.2):  # as good as the same place
+        board.write("given_up", (GivenUp((x, 1.0), "no_path"),))
         leaf.tick_once()
         statuses.append(leaf.status)
     assert statuses == [Status.SUCCESS, Status.SUCCESS, Status.FAILURE]
-    assert robot.avoided == [(1.0, 1.0)]  # the third round was refused
+    board.write("given_up", (GivenUp((1.2, 1.0), "no_path"), GivenUp((3.0, 1.0), "no_path")))
+    leaf.tick_once()
+    assert [place.position for place in board["given_up"]] == [(1.2, 1.0)]
 
 
-def test_what_was_looked_at_in_vain_stays_given_up(robot: FakeRobot, board: Blackboard) -> None:
+def test_scraps_and_what_was_looked_at_in_vain_stay_given_up(robot: FakeRobot, board: Blackboard) -> None:
     seen = GivenUp((2.0, 2.0), "still 0.3 m² unknown", was_seen=True)
-    board.write("given_up", (GivenUp((1.0, 1.0), "held"), seen))
-    TakeBack("take back", robot, board).tick_once()
-    assert board["given_up"] == (seen,)
+    scrap = GivenUp((3.0, 2.0), "held", gain_m2=0.2)
+    robot.avoid((1.0, 1.0))
+    board.write("given_up", (GivenUp((1.0, 1.0), "held", gain_m2=0.4), seen, scrap))
+    TakeBack("take back", robot, board, {"at_least": 0.3}).tick_once()
+    assert board["given_up"] == (seen, scrap)
+    assert robot.avoided == []

@@ -23,8 +23,21 @@ def test_a_tight_place_closes_the_passage_around_it_and_opens_again() -> None:
     row, col = grid.cell_of(1.1, 1.0)
     assert clearance_field(marked)[row, col] < 0.25
     assert places.mark(grid) is marked
-    places.forget()
+    assert places.reopen(chances=1) == 1
     assert places.mark(grid) is grid
+
+
+def test_a_place_that_closes_again_stays_closed_once_its_chances_are_used_up() -> None:
+    places = TightPlaces()
+    places.add((1.0, 1.0))
+    assert places.reopen(chances=1) == 1
+    places.add((1.1, 1.0))
+    places.add((1.6, 1.0))
+    assert places.reopen(chances=1) == 1
+    marked = places.mark(floor())
+    assert marked.value_at(1.1, 1.0) == OCCUPIED
+    assert marked.value_at(1.6, 1.0) == FREE
+    assert places.reopen(chances=2) == 1
 
 
 def test_a_place_outside_the_map_is_no_harm() -> None:
