@@ -1,7 +1,8 @@
 from __future__ import annotations
 
 import numpy as np
-from explore_bt_slam.closures import ClosureFinder
+import pytest
+from explore_bt_slam.closures import ClosureFinder, ClosureRule
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.surfels import normals_of
 from numpy.typing import NDArray
@@ -83,3 +84,44 @@ def test_a_wide_search_waits_for_a_second_closure_that_agrees() -> None:
     for edge in edges:
         truth = seen[edge.a].between(now if edge.b == 3 else later)
         assert truth.distance_to(edge.relative) < 0.03
+
+
+def half_view(room: Room, pose: Pose2, driven_m: float, seed: int) -> Keyframe:
+    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 181)
+    ranges = room.ranges(np.tile(pose.xy, (181, 1)), angles + pose.yaw_rad)
+    ranges = ranges + np.random.default_rng(seed).normal(0.0, 0.01, 181)
+    angles, ranges = angles[ranges < 20.0], ranges[ranges < 20.0]
+    points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
+    return Keyframe(driven_m, points, normals_of(points), driven_m)
+
+
+@pytest.mark.parametrize(("drifts_m", "fewest"), [((-0.9, -0.6, 0.3, 0.9), 5), ((-2.5, 1.5, 2.0), 0)])
+def test_a_corridor_driven_back_is_closed_rightly_or_not_at_all(
+    drifts_m: tuple[float, ...], fewest: int
+) -> None:
+    """With half a view, a drift along the corridor and niches at odd places; at most one in 50 may err.
+
+    A best pose at the edge of the window is the shoulder of something beyond it.
+    """
+    right = wrong = 0
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        posts = [
+            [x, rng.choice([-1.0, 1.0]) * (1.2 + rng.uniform(-0.05, 0.05)), rng.uniform(0.1, 0.25)]
+            for x in np.cumsum(rng.uniform(1.5, 6.0, 30)) - 50.0
+        ]
+        corridor = Room(np.array([[-80.0, -1.2, 80.0, -1.2], [-80.0, 1.2, 80.0, 1.2]]), np.array(posts))
+        seen = [Pose2(0.6 * k, 0.0, 0.0) for k in range(-8, 9)]
+        keyframes = [half_view(corridor, pose, 0.6 * k, k) for k, pose in enumerate(seen)]
+        for x in (-2.0, 0.0, 2.0):
+            now = Pose2(x, 0.05, np.pi)
+            newest = half_view(corridor, now, 30.0, 99)
+            for drift_m in drifts_m:
+                poses = np.array([pose.as_array() for pose in [*seen, Pose2(x + drift_m, 0.05, np.pi)]])
+                covariances = np.tile(np.diag([0.4, 0.03, 0.01]) ** 2, (len(poses), 1, 1))
+                finder = ClosureFinder(ClosureRule(wide_m=3.0))
+                for edge in finder.find([*keyframes, newest], poses, covariances):
+                    is_right = seen[edge.a].between(now).distance_to(edge.relative) < 0.3
+                    right, wrong = right + is_right, wrong + (not is_right)
+    assert right >= fewest
+    assert wrong <= 0.02 * (right + wrong)

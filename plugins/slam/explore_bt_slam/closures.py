@@ -20,6 +20,9 @@ from explore_bt_slam.pose_graph import Edge, closure_edge
 
 __all__ = ["ClosureFinder", "ClosureRule"]
 
+_INNER_SHARE = 0.8
+"""A best pose nearer to the window's edge is no peak: what lies beyond may be better."""
+
 
 @dataclass(frozen=True, slots=True)
 class ClosureRule:
@@ -138,7 +141,8 @@ class ClosureFinder:
             match = search(
                 grid, scan.points[:: max(scan.points.shape[0] // 150, 1)], predicted, window_m, window_rad
             )
-            if match.runner_up > rule.ambiguity * match.score:
+            off_m = max(abs(match.pose.x - predicted.x), abs(match.pose.y - predicted.y))
+            if match.runner_up > rule.ambiguity * match.score or off_m > _INNER_SHARE * window_m:
                 return None
             guess = match.pose
         surfels = gather_surfels(keyframes, poses, chosen, predicted.xy, rule.reach_m + window_m)
