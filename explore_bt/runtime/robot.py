@@ -22,6 +22,7 @@ from explore_bt.interfaces import (
     RobotSnapshot,
 )
 from explore_bt.mission import Mission, RobotSpec, build_tree
+from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
@@ -67,7 +68,7 @@ class Robot:
         self._tight = TightPlaces()
         self._slam_fault = ""
         self._logged: set[tuple[str, str]] = set()
-        self._health = Health.OK
+        self._health_news = HealthNews()
         self._gate_reason = ""
 
     def setup(self) -> None:
@@ -307,10 +308,9 @@ class Robot:
 
     def _watch_health(self) -> None:
         estimate = self.estimate()
-        if estimate.health is not self._health:
-            level = "info" if estimate.health is Health.OK else "warning"
-            self.tell(level, "slam", f"{self._health} → {estimate.health} {estimate.reason}".strip())
-            self._health = estimate.health
+        news = self._health_news.of(estimate, self.now_s())
+        if news:
+            self.tell("info" if estimate.health is Health.OK else "warning", "slam", news)
 
     def _watch_gate(self) -> None:
         if self.pilot.gate_reason and not self._gate_reason and self._scan is not None:
