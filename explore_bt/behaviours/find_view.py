@@ -34,6 +34,8 @@ __all__ = ["FindView"]
 _MARGIN_M = 0.02
 _TRIES = 20
 _SCRAP_M2 = 0.5
+_ROOM_M = 3.0
+"""So far around the robot all places count: coming back for a scrap costs more than to see it now."""
 
 
 class FindView(Search):
@@ -90,13 +92,18 @@ class FindView(Search):
     )
 
     def update(self) -> Status:
-        """The best of the thinned places; where those show nothing of all places, at last of tight ones."""
+        """The best place; far off thinned ones while those show any, and tight ones at last."""
         self._note_look_in_vain()
         least_m = self.robot.least_margin_m
         more = self._further_places()
-        passes = ((_MARGIN_M, False), (_MARGIN_M, True), (max(least_m, 0.0), True), (least_m, True))
-        for margin_m, is_dense in dict.fromkeys(passes):
-            places = self._places(margin_m, is_dense, more)
+        passes = (
+            (_MARGIN_M, _ROOM_M),
+            (_MARGIN_M, math.inf),
+            (max(least_m, 0.0), math.inf),
+            (least_m, math.inf),
+        )
+        for margin_m, dense_m in dict.fromkeys(passes):
+            places = self._places(margin_m, dense_m, more)
             for _ in range(_TRIES):
                 chosen = self._choose(places)
                 if self._is_too_little(chosen):
@@ -127,14 +134,14 @@ class FindView(Search):
         goal = self._present_goal
         return np.array([*self._safe_waypoints(), *([goal] if goal else [])]).reshape(-1, 2)
 
-    def _places(self, margin_m: float, is_dense: bool, more: NDArray[np.float64]) -> ViewPlaces:
+    def _places(self, margin_m: float, dense_m: float, more: NDArray[np.float64]) -> ViewPlaces:
         view = self.robot.view()
         return ViewPlaces(
             view.grid,
             view.clearance_m,
             self.travel_m(self.here().xy, margin_m),
             radius_m=self.robot.footprint_radius_m + margin_m,
-            is_dense=is_dense,
+            dense_m=dense_m,
             more=more,
         )
 

@@ -201,7 +201,7 @@ class Outlooks:
         depth_cells: float,
         *,
         first: tuple[int, int] = (0, 0),
-        near_cells: float | None = None,
+        near_cells: NDArray[np.float64] | None = None,
     ) -> Outlook:
         """The unknown cells in view of each place; none of places with no frontier near.
 
@@ -211,12 +211,15 @@ class Outlooks:
             reach_cells: the lidar's range; the same in every call.
             depth_cells: a ray ends after so many cells of unknown; the same in every call.
             first: the map's first cell on a lattice that does not move when the map grows.
-            near_cells: how near a frontier has to be; the lidar's range by default.
+            near_cells: (N,) how near a frontier has to be to each place; the lidar's range by default.
         """
         self._forget_changed(cells, first)
-        near = _near_frontier(read_only(cells), reach_cells if near_cells is None else near_cells)
         keys = [(row, col) for row, col in places.tolist()]
-        useful = near[places[:, 0] // 8, places[:, 1] // 8]
+        near_cells = np.full(len(keys), reach_cells) if near_cells is None else near_cells
+        useful = np.zeros(len(keys), dtype=np.bool_)
+        for cells_away in np.unique(near_cells):
+            near = _near_frontier(read_only(cells), cells_away)
+            useful |= (near_cells == cells_away) & near[places[:, 0] // 8, places[:, 1] // 8]
         fresh = [i for i, key in enumerate(keys) if useful[i] and key not in self._known]
         if fresh:
             if reach_cells not in self._rays:

@@ -59,7 +59,7 @@ class ViewPlaces:
         travel_m: NDArray[np.float32],
         *,
         radius_m: float,
-        is_dense: bool = False,
+        dense_m: float = 0.0,
         more: NDArray[np.float64] | None = None,
     ) -> None:
         """Choose the places.
@@ -69,27 +69,34 @@ class ViewPlaces:
             clearance_m: (rows, cols) float32, as from :func:`clearance_field`.
             travel_m: (rows, cols) float32, as from :func:`travel_field`.
             radius_m: r that ``travel_m`` was made with.
-            is_dense: squares of 0.3 m instead of 0.6 m.
+            dense_m: squares of 0.3 m as far as this from where ``travel_m`` is 0, of 0.6 m elsewhere. In the
+                fine ones only places within 1.5 m of a frontier count.
             more: (N, 2) metres, further places; those out of reach are left out.
         """
         self.grid = grid
-        self._is_dense = is_dense
         self._radius_m = radius_m
         self._room = np.where(np.isfinite(travel_m), clearance_m, np.float32(0.0))
-        best = Blocks.over(grid, _DENSE_M if is_dense else _SPARSE_M).best_cells(self._room)
-        cells = best[best[..., 0] >= 0]
+        cells = self._best_cells(_SPARSE_M)
         if more is not None and len(more):
             extra = grid.cells_of(more)
             inside = ((extra >= 0) & (extra < grid.shape)).all(axis=1)
             extra = extra[inside]
             cells = np.concatenate((cells, extra[self._room[tuple(extra.T)] > 0.0]))
-        self.cells: NDArray[np.int64] = cells
+        dense = self._best_cells(_DENSE_M) if dense_m > 0.0 else cells[:0]
+        dense = dense[travel_m[tuple(dense.T)] <= dense_m]
+        self.cells: NDArray[np.int64] = np.concatenate((cells, dense))
+        self._is_dense = np.arange(len(self.cells)) >= len(cells)
+
+    def _best_cells(self, side_m: float) -> NDArray[np.int64]:
+        best = Blocks.over(self.grid, side_m).best_cells(self._room)
+        return best[best[..., 0] >= 0]
 
     def without(self, spots: NDArray[np.float64]) -> ViewPlaces:
         """The same places but those within 0.3 m of one of ``spots``, (M, 2) metres, ``map`` frame."""
         apart = self.xy[:, None] - spots[None]
         others = copy(self)
-        others.cells = self.cells[(np.hypot(apart[..., 0], apart[..., 1]) > _SAME_M).all(axis=1)]
+        is_kept = (np.hypot(apart[..., 0], apart[..., 1]) > _SAME_M).all(axis=1)
+        others.cells, others._is_dense = self.cells[is_kept], self._is_dense[is_kept]
         return others
 
     @property
@@ -124,7 +131,7 @@ class ViewPlaces:
             range_m / side_m,
             depth_m / side_m,
             first=blocks.first,
-            near_cells=(_NEAR_M if self._is_dense else range_m) / side_m,
+            near_cells=np.where(self._is_dense, _NEAR_M, range_m) / side_m,
         )
         return outlook, side_m**2, cells.size
 
