@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
-from explore_bt_slam.consistency import agree
+from explore_bt_slam.agreement import Agreement
 from explore_bt_slam.correlative import ScoreGrid, search
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.local_map import gather_points, gather_surfels, stretch_about
@@ -65,7 +64,7 @@ class ClosureFinder:
 
     def __init__(self, rule: ClosureRule | None = None) -> None:
         self._rule = rule or ClosureRule()
-        self._pending: deque[Edge] = deque(maxlen=20)
+        self._agreement = Agreement()
 
     def find(
         self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], covariances: NDArray[np.float64]
@@ -91,7 +90,7 @@ class ClosureFinder:
             if window_m <= self._rule.wide_m:
                 edges.append(edge)
             else:
-                edges.extend(self._agreed(edge, poses, covariances))
+                edges.extend(self._agreement.of(edge, poses, covariances))
         return edges
 
     def _candidates(
@@ -172,12 +171,3 @@ class ClosureFinder:
             and found.weakest_sigma_m <= max(0.02, 0.1 * window_m)
             and surprise <= self._rule.gate
         )
-
-    def _agreed(self, edge: Edge, poses: NDArray[np.float64], covariances: NDArray[np.float64]) -> list[Edge]:
-        """Both closures, if an earlier doubtful one says the same about the drift; else wait."""
-        for other in list(self._pending):
-            if other.b != edge.b and agree(edge, other, poses, covariances):
-                self._pending.remove(other)
-                return [other, edge]
-        self._pending.append(edge)
-        return []
