@@ -25,9 +25,9 @@ __all__ = ["BackEnd"]
 _NEIGHBOURS_M = 6.0
 _TRUSTED_SIGMA_M = 0.07
 _EDGE_FLOOR = np.diag([0.0075, 0.0075, 0.0045]) ** 2
-_EDGE_MOST = 1.0
+_EDGE_MOST = 25.0
 """Largest variance of a step between keyframes, m² and rad²: in a hall without walls in range the filter's
-own grows without bound, and the graph's equations would become singular in doubles."""
+own grows without bound. Less would make the graph too sure of a blind stretch to close a loop over it."""
 
 
 class BackEnd:

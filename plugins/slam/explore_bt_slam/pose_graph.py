@@ -230,6 +230,7 @@ def _parameters() -> gtsam.ISAM2Params:
     parameters = gtsam.ISAM2Params()
     parameters.setRelinearizeThreshold(1e-3)
     parameters.relinearizeSkip = 1
+    parameters.setFactorization("QR")  # Cholesky gives up where steps of metres and of millimetres meet
     return parameters
 
 
