@@ -44,6 +44,8 @@ class FarRule:
         overlap: least share of the newest scan that fits the place's lines.
         seen_through: largest share of the place's points that the scan looks right through.
         agreeing, span_m: so many closures over so much way must say the same about the drift.
+        expected_m: half that way is enough for closures that find the robot as near as this to where the
+            graph has it: a false one would hardly happen to.
     """
 
     driven_m: float = 10.0
@@ -58,6 +60,7 @@ class FarRule:
     seen_through: float = 0.12
     agreeing: int = 3
     span_m: float = 3.0
+    expected_m: float = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,7 +250,10 @@ class FarClosureFinder:
             keyframes[each.b].driven_m for each in agreed
         )
         is_majority = 2 * len(agreed) > len(self._pending)
-        if len(agreed) < rule.agreeing or span_m < rule.span_m or not is_majority:
+        believed = Pose2(*poses[edge.a].tolist()).between(Pose2(*poses[edge.b].tolist()))
+        is_expected = edge.relative.distance_to(believed) <= rule.expected_m
+        enough_m = 0.5 * rule.span_m if is_expected else rule.span_m
+        if len(agreed) < rule.agreeing or span_m < enough_m or not is_majority:
             return []
         self._pending = []
         return agreed
