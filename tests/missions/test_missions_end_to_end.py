@@ -118,7 +118,7 @@ def test_the_paper_s_own_tree_ends_by_naming_its_live_lock(run: RunMission, tmp_
     (tmp_path / "mission.yaml").write_text(text)
     result = run(tmp_path / "mission.yaml", "slam=ground_truth")
     assert result.outcome is Outcome.FAILED
-    assert "live-lock: 12 decisions brought" in result.reason
+    assert "live-lock: 40 decisions brought" in result.reason
     assert result.contacts == 0
 
 
