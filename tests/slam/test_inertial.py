@@ -53,7 +53,7 @@ def test_uncertainty_grows_until_a_registration() -> None:
     inertial = InertialFilter()
     spreads = []
     for step in range(100):
-        inertial.take_imu(Imu(0.01 * step, (0.0, 0.0, 0.0), (0.0, 0.0, 9.81)))
+        inertial.take_imu(Imu(0.01 * step, (0.0, 0.0, 0.1), (0.0, 0.0, 9.81)))
         spreads.append(float(np.trace(inertial.covariance)))
     assert np.all(np.diff(spreads) > 0.0)
     inertial.correct(inertial.motion, EXACT)

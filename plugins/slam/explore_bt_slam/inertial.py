@@ -17,10 +17,13 @@ from numpy.typing import NDArray
 
 from explore_bt.types import Imu, Pose2, WheelOdometry
 from explore_bt_slam.arrays import Floats
+from explore_bt_slam.standstill import Standstill
 from explore_bt_slam.trail import Trail
 
 __all__ = ["InertialFilter", "InertialNoise"]
 
+_VELOCITY, _AHEAD, _SIDEWAYS, _GYRO_BIAS = slice(3, 5), slice(3, 4), slice(4, 5), slice(7, 8)
+"""Where among the eight numbers."""
 _IMU_SILENCE_S = 0.1
 _SPAN_GAIN = 0.1
 _UNDER_WAY_MPS = 0.2
@@ -50,6 +53,7 @@ class InertialNoise:
     odometry: float = 0.05  # m/s
     sideways: float = 0.05  # m/s
     velocity_lost: float = 0.2  # m/s
+    gyro_sample: float = 0.005  # rad/s, of one sample at rest
 
 
 class InertialFilter:
@@ -72,6 +76,7 @@ class InertialFilter:
         self._time_s: float | None = None
         self._imu_s = -math.inf
         self._imu = (0.0, 0.0, 0.0)
+        self._standstill = Standstill()
         self._odometry: WheelOdometry | None = None
         self._wheels_s = -math.inf
         self._span_s = 0.0
@@ -125,6 +130,8 @@ class InertialFilter:
         if self._time_s is None:
             self._begin(imu.stamp_s)
         held = self._imu if imu.stamp_s - self._imu_s < _IMU_SILENCE_S else sample
+        for rate_rps in self._standstill.rates_rps(imu):
+            self._measure(_GYRO_BIAS, self._bias[2:], np.array([rate_rps]), self._noise.gyro_sample)
         self._imu_s = imu.stamp_s
         self._imu = (0.5 * (held[0] + sample[0]), 0.5 * (held[1] + sample[1]), 0.5 * (held[2] + sample[2]))
         self.advance_to(imu.stamp_s)
@@ -147,19 +154,19 @@ class InertialFilter:
             self._roll_on(step, span_s, odometry.stamp_s)
         elif span_s < 1.0:
             measured = np.array([step.x, step.y]) / span_s
-            self._measure_velocity(slice(3, 5), measured, self._noise.odometry)
+            self._measure(_VELOCITY, self._velocity, measured, self._noise.odometry)
 
     def take_speed(self, along_mps: float, sigma_mps: float) -> None:
         """The speed ahead, as the camera saw it go by."""
-        self._measure_velocity(slice(3, 4), np.array([along_mps]), sigma_mps)
+        self._measure(_AHEAD, self._velocity[:1], np.array([along_mps]), sigma_mps)
 
     def roll(self) -> None:
         """A robot on wheels does not slide sideways (the paper's unicycle), nor go faster than it can."""
-        self._measure_velocity(slice(4, 5), np.zeros(1), self._noise.sideways)
+        self._measure(_SIDEWAYS, self._velocity[1:], np.zeros(1), self._noise.sideways)
         speed_mps, most_mps = float(self._velocity[0]), self._speed_limit_mps
         if abs(speed_mps) > most_mps:
             most = np.array([math.copysign(most_mps, speed_mps)])
-            self._measure_velocity(slice(3, 4), most, self._noise.sideways)
+            self._measure(_AHEAD, self._velocity[:1], most, self._noise.sideways)
 
     def advance_to(self, time_s: float) -> None:
         """Predict up to a time; going back changes nothing."""
@@ -261,10 +268,12 @@ class InertialFilter:
         """The prediction is less sure than the clock makes it: add (3, 3) to the pose's covariance."""
         self._covariance[:3, :3] += spread
 
-    def _measure_velocity(self, part: slice, measured: NDArray[np.float64], sigma_mps: float) -> None:
+    def _measure(
+        self, part: slice, expected: NDArray[np.float64], measured: NDArray[np.float64], sigma: float
+    ) -> None:
+        """A direct look at a ``part`` of the eight numbers, which is ``expected`` now."""
         P = self._covariance
-        expected = self._velocity[part.start - 3 : part.stop - 3]
-        gain = P[:, part] @ np.linalg.inv(P[part, part] + np.eye(measured.shape[0]) * sigma_mps**2)
+        gain = P[:, part] @ np.linalg.inv(P[part, part] + np.eye(measured.shape[0]) * sigma**2)
         self._apply(gain @ (measured - expected))
         P = P - gain @ P[part, :]
         self._covariance = 0.5 * (P + P.T)
