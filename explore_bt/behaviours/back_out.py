@@ -13,7 +13,6 @@ from explore_bt.units import Duration, Length
 
 __all__ = ["BackOut"]
 
-
 _NEAR_M = 0.05
 _CLEAR_OF_M = 0.5
 """Beyond the footprint, what the scan meets is near; and so far back from what is."""

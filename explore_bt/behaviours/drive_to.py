@@ -18,7 +18,6 @@ __all__ = ["DriveTo"]
 _LOOK_PERIOD_S = 1.0
 _WATCHED_M = 4.0
 _TIGHT_POSES_AHEAD = 2  # about 0.2 m: the gate's brake ends before the place itself
-
 _NOTHING_M2 = 0.02
 _DETOUR_M = 5.0
 

@@ -102,8 +102,11 @@ class FindView(Search):
             (max(least_m, 0.0), math.inf),
             (least_m, math.inf),
         )
+        travel_m: dict[float, NDArray[np.float32]] = {}
         for margin_m, dense_m in dict.fromkeys(passes):
-            places = self._places(margin_m, dense_m, more)
+            if margin_m not in travel_m:
+                travel_m[margin_m] = self.travel_m(self.here().xy, margin_m)
+            places = self._places(travel_m[margin_m], margin_m, dense_m, more)
             for _ in range(_TRIES):
                 chosen = self._choose(places)
                 if self._is_too_little(chosen):
@@ -134,12 +137,14 @@ class FindView(Search):
         goal = self._present_goal
         return np.array([*self._safe_waypoints(), *([goal] if goal else [])]).reshape(-1, 2)
 
-    def _places(self, margin_m: float, dense_m: float, more: NDArray[np.float64]) -> ViewPlaces:
+    def _places(
+        self, travel_m: NDArray[np.float32], margin_m: float, dense_m: float, more: NDArray[np.float64]
+    ) -> ViewPlaces:
         view = self.robot.view()
         return ViewPlaces(
             view.grid,
             view.clearance_m,
-            self.travel_m(self.here().xy, margin_m),
+            travel_m,
             radius_m=self.robot.footprint_radius_m + margin_m,
             dense_m=dense_m,
             more=more,

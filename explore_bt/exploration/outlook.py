@@ -121,8 +121,8 @@ def _look(cells, eyes, depth, rays, ray_rows, ray_cols, lengths):  # type: ignor
 
 
 @njit(cache=True)
-def _near_frontier(cells, reach):  # type: ignore[no-untyped-def]  # numba kernel
-    """Blocks of 8 × 8 cells that have a free cell beside an unknown one within reach, as a mask."""
+def _frontier_blocks(cells):  # type: ignore[no-untyped-def]  # numba kernel
+    """Blocks of 8 × 8 cells that have a free cell beside an unknown one, as a mask."""
     rows, cols = cells.shape
     high, wide = rows // 8 + 1, cols // 8 + 1
     at = np.zeros((high, wide), dtype=np.bool_)
@@ -137,6 +137,13 @@ def _near_frontier(cells, reach):  # type: ignore[no-untyped-def]  # numba kerne
                 or (col + 1 < cols and cells[row, col + 1] == UNKNOWN)
             ):
                 at[row // 8, col // 8] = True
+    return at
+
+
+@njit(cache=True)
+def _within(at, reach):  # type: ignore[no-untyped-def]  # numba kernel
+    """Blocks with a marked one within reach, which counts in cells."""
+    high, wide = at.shape
     near = np.zeros((high, wide), dtype=np.bool_)
     span = int(reach) // 8 + 1
     for row in range(high):
@@ -216,9 +223,9 @@ class Outlooks:
         self._forget_changed(cells, first)
         keys = [(row, col) for row, col in places.tolist()]
         near_cells = np.full(len(keys), reach_cells) if near_cells is None else near_cells
-        useful = np.zeros(len(keys), dtype=np.bool_)
+        useful, frontier = np.zeros(len(keys), dtype=np.bool_), _frontier_blocks(read_only(cells))
         for cells_away in np.unique(near_cells):
-            near = _near_frontier(read_only(cells), cells_away)
+            near = _within(frontier, cells_away)
             useful |= (near_cells == cells_away) & near[places[:, 0] // 8, places[:, 1] // 8]
         fresh = [i for i, key in enumerate(keys) if useful[i] and key not in self._known]
         if fresh:

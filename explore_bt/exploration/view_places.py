@@ -50,7 +50,12 @@ class Ways:
 
 
 class ViewPlaces:
-    """Of every square of floor the roomiest cell that the robot can come to: most lie on the skeleton."""
+    """Of every square of floor the roomiest cell that the robot can come to: most lie on the skeleton.
+
+    Attributes:
+        cells: (N, 2) int64 rows and columns.
+        xy: (N, 2) float64, metres, ``map`` frame: their middles.
+    """
 
     def __init__(
         self,
@@ -85,6 +90,7 @@ class ViewPlaces:
         dense = self._best_cells(_DENSE_M) if dense_m > 0.0 else cells[:0]
         dense = dense[travel_m[tuple(dense.T)] <= dense_m]
         self.cells: NDArray[np.int64] = np.concatenate((cells, dense))
+        self.xy = grid.centers_of(self.cells)
         self._is_dense = np.arange(len(self.cells)) >= len(cells)
 
     def _best_cells(self, side_m: float) -> NDArray[np.int64]:
@@ -96,13 +102,9 @@ class ViewPlaces:
         apart = self.xy[:, None] - spots[None]
         others = copy(self)
         is_kept = (np.hypot(apart[..., 0], apart[..., 1]) > _SAME_M).all(axis=1)
-        others.cells, others._is_dense = self.cells[is_kept], self._is_dense[is_kept]
+        others.cells, others.xy = self.cells[is_kept], self.xy[is_kept]
+        others._is_dense = self._is_dense[is_kept]
         return others
-
-    @property
-    def xy(self) -> NDArray[np.float64]:
-        """(N, 2) metres, ``map`` frame."""
-        return self.grid.centers_of(self.cells)
 
     def ways(self, clearance_weight: float) -> Ways:
         """The floor between them."""

@@ -10,12 +10,21 @@ from numpy.typing import NDArray
 from explore_bt.testing.slam_room import Room
 from explore_bt.types import Pose2
 
+ALL_ROUND = np.linspace(-np.pi, np.pi, 360, endpoint=False)
+AHEAD = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 181)
 
-def keyframe(room: Room, pose: Pose2, driven_m: float, seed: int) -> Keyframe:
-    angles = np.linspace(-np.pi, np.pi, 360, endpoint=False)
-    ranges = room.ranges(np.tile(pose.xy, (360, 1)), angles + pose.yaw_rad)
-    ranges = ranges + np.random.default_rng(seed).normal(0.0, 0.01, 360)
-    near = ranges < 5.0
+
+def keyframe(
+    room: Room,
+    pose: Pose2,
+    driven_m: float,
+    seed: int,
+    angles: NDArray[np.float64] = ALL_ROUND,
+    range_m: float = 5.0,
+) -> Keyframe:
+    ranges = room.ranges(np.tile(pose.xy, (len(angles), 1)), angles + pose.yaw_rad)
+    ranges = ranges + np.random.default_rng(seed).normal(0.0, 0.01, len(angles))
+    near = ranges < range_m
     angles, ranges = angles[near], ranges[near]
     points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
     return Keyframe(driven_m, points, normals_of(points), driven_m)
@@ -86,15 +95,6 @@ def test_a_wide_search_waits_for_a_second_closure_that_agrees() -> None:
         assert truth.distance_to(edge.relative) < 0.03
 
 
-def half_view(room: Room, pose: Pose2, driven_m: float, seed: int) -> Keyframe:
-    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 181)
-    ranges = room.ranges(np.tile(pose.xy, (181, 1)), angles + pose.yaw_rad)
-    ranges = ranges + np.random.default_rng(seed).normal(0.0, 0.01, 181)
-    angles, ranges = angles[ranges < 20.0], ranges[ranges < 20.0]
-    points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
-    return Keyframe(driven_m, points, normals_of(points), driven_m)
-
-
 @pytest.mark.parametrize(("drifts_m", "fewest"), [((-0.9, -0.6, 0.3, 0.9), 5), ((-2.5, 1.5, 2.0), 0)])
 def test_a_corridor_driven_back_is_closed_rightly_or_not_at_all(
     drifts_m: tuple[float, ...], fewest: int
@@ -112,10 +112,10 @@ def test_a_corridor_driven_back_is_closed_rightly_or_not_at_all(
         ]
         corridor = Room(np.array([[-80.0, -1.2, 80.0, -1.2], [-80.0, 1.2, 80.0, 1.2]]), np.array(posts))
         seen = [Pose2(0.6 * k, 0.0, 0.0) for k in range(-8, 9)]
-        keyframes = [half_view(corridor, pose, 0.6 * k, k) for k, pose in enumerate(seen)]
+        keyframes = [keyframe(corridor, pose, 0.6 * k, k, AHEAD, 20.0) for k, pose in enumerate(seen)]
         for x in (-2.0, 0.0, 2.0):
             now = Pose2(x, 0.05, np.pi)
-            newest = half_view(corridor, now, 30.0, 99)
+            newest = keyframe(corridor, now, 30.0, 99, AHEAD, 20.0)
             for drift_m in drifts_m:
                 poses = np.array([pose.as_array() for pose in [*seen, Pose2(x + drift_m, 0.05, np.pi)]])
                 covariances = np.tile(np.diag([0.4, 0.03, 0.01]) ** 2, (len(poses), 1, 1))

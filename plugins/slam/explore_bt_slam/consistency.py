@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from explore_bt.types import Pose2
 from explore_bt_slam.pose_graph import Edge
 
-__all__ = ["agree", "largest_consistent"]
+__all__ = ["agree", "between", "largest_consistent"]
 
 _COMMON = np.diag([0.05, 0.05, 0.02]) ** 2
 _OLD_SHARE = 0.03
@@ -28,9 +28,9 @@ def agree(one: Edge, other: Edge, poses: NDArray[np.float64], covariances: NDArr
         poses: (N, 3) float64 keyframe poses.
         covariances: (N, 3, 3) float64 relative to the newest keyframe, see ``relative_covariances``.
     """
-    old = _between(poses, other.a, one.a)
+    old = between(poses, other.a, one.a)
     loop = (
-        one.relative.compose(_between(poses, one.b, other.b)).compose(other.relative.inverse()).compose(old)
+        one.relative.compose(between(poses, one.b, other.b)).compose(other.relative.inverse()).compose(old)
     ).as_array()
     apart = _OLD_SHARE * float(np.hypot(old.x, old.y))
     spread = covariances[other.b] + covariances[one.b] + one.covariance + other.covariance + _COMMON
@@ -55,5 +55,6 @@ def largest_consistent(
     return chosen[::-1]
 
 
-def _between(poses: NDArray[np.float64], a: int, b: int) -> Pose2:
+def between(poses: NDArray[np.float64], a: int, b: int) -> Pose2:
+    """Pose of keyframe ``b`` in keyframe ``a``, by (N, 3) poses in the ``map`` frame."""
     return Pose2(*poses[a].tolist()).between(Pose2(*poses[b].tolist()))

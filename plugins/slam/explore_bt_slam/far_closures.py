@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2, wrap_angle
-from explore_bt_slam.consistency import largest_consistent
+from explore_bt_slam.consistency import between, largest_consistent
 from explore_bt_slam.contradiction import seen_through
 from explore_bt_slam.correlative import ScoreGrid, search
 from explore_bt_slam.keyframes import Keyframe
@@ -250,8 +250,7 @@ class FarClosureFinder:
             keyframes[each.b].driven_m for each in agreed
         )
         is_majority = 2 * len(agreed) > len(self._pending)
-        believed = Pose2(*poses[edge.a].tolist()).between(Pose2(*poses[edge.b].tolist()))
-        is_expected = edge.relative.distance_to(believed) <= rule.expected_m
+        is_expected = edge.relative.distance_to(between(poses, edge.a, edge.b)) <= rule.expected_m
         enough_m = 0.5 * rule.span_m if is_expected else rule.span_m
         if len(agreed) < rule.agreeing or span_m < enough_m or not is_majority:
             return []

@@ -131,7 +131,7 @@ class InertialFilter:
             self._begin(imu.stamp_s)
         held = self._imu if imu.stamp_s - self._imu_s < _IMU_SILENCE_S else sample
         for rate_rps in self._standstill.rates_rps(imu):
-            self._measure(_GYRO_BIAS, self._bias[2:], np.array([rate_rps]), self._noise.gyro_sample)
+            self._measure(_GYRO_BIAS, np.array([rate_rps]), self._noise.gyro_sample)
         self._imu_s = imu.stamp_s
         self._imu = (0.5 * (held[0] + sample[0]), 0.5 * (held[1] + sample[1]), 0.5 * (held[2] + sample[2]))
         self.advance_to(imu.stamp_s)
@@ -154,19 +154,19 @@ class InertialFilter:
             self._roll_on(step, span_s, odometry.stamp_s)
         elif span_s < 1.0:
             measured = np.array([step.x, step.y]) / span_s
-            self._measure(_VELOCITY, self._velocity, measured, self._noise.odometry)
+            self._measure(_VELOCITY, measured, self._noise.odometry)
 
     def take_speed(self, along_mps: float, sigma_mps: float) -> None:
         """The speed ahead, as the camera saw it go by."""
-        self._measure(_AHEAD, self._velocity[:1], np.array([along_mps]), sigma_mps)
+        self._measure(_AHEAD, np.array([along_mps]), sigma_mps)
 
     def roll(self) -> None:
         """A robot on wheels does not slide sideways (the paper's unicycle), nor go faster than it can."""
-        self._measure(_SIDEWAYS, self._velocity[1:], np.zeros(1), self._noise.sideways)
+        self._measure(_SIDEWAYS, np.zeros(1), self._noise.sideways)
         speed_mps, most_mps = float(self._velocity[0]), self._speed_limit_mps
         if abs(speed_mps) > most_mps:
             most = np.array([math.copysign(most_mps, speed_mps)])
-            self._measure(_AHEAD, self._velocity[:1], most, self._noise.sideways)
+            self._measure(_AHEAD, most, self._noise.sideways)
 
     def advance_to(self, time_s: float) -> None:
         """Predict up to a time; going back changes nothing."""
@@ -268,11 +268,10 @@ class InertialFilter:
         """The prediction is less sure than the clock makes it: add (3, 3) to the pose's covariance."""
         self._covariance[:3, :3] += spread
 
-    def _measure(
-        self, part: slice, expected: NDArray[np.float64], measured: NDArray[np.float64], sigma: float
-    ) -> None:
-        """A direct look at a ``part`` of the eight numbers, which is ``expected`` now."""
+    def _measure(self, part: slice, measured: NDArray[np.float64], sigma: float) -> None:
+        """A direct look at a ``part`` of the eight numbers."""
         P = self._covariance
+        expected = np.concatenate((self._pose, self._velocity, self._bias))[part]
         gain = P[:, part] @ np.linalg.inv(P[part, part] + np.eye(measured.shape[0]) * sigma**2)
         self._apply(gain @ (measured - expected))
         P = P - gain @ P[part, :]
