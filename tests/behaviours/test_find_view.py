@@ -3,8 +3,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from explore_bt.behaviours import FindFrontier, FindView, GivenUp
+from explore_bt.exploration import clearance_field
 from explore_bt.testing.fake_robot import FakeRobot
 from explore_bt.tree import Blackboard, Leaf, Status
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
@@ -95,3 +98,24 @@ def test_places_looked_from_in_vain_are_named_only_if_their_area_stayed_unknown(
         leaf.tick_once()
         assert leaf.status is Status.FAILURE
         assert any("after looking" in each for each in blackboard["left_open"]) is is_named
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(deadline=None, max_examples=25)
+def test_no_goal_is_ever_proposed_where_the_footprint_does_not_fit(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cells = np.full((80, 80), UNKNOWN, dtype=np.int8)
+    cells[10:60, 10:60] = FREE
+    for _ in range(12):
+        row, col = rng.integers(5, 70, 2)
+        height, width = rng.integers(1, 12, 2)
+        cells[row : row + height, col : col + width] = rng.choice([OCCUPIED, UNKNOWN])
+    cells[30:40, 30:40] = FREE
+    robot = FakeRobot(OccupancyGrid(cells, 0.1, (0.0, 0.0)), Pose2(3.5, 3.5, 0.0))
+    robot.least_margin_m = 0.0
+    for cls in (FindView, FindFrontier):
+        leaf = cls("find", robot, Blackboard(), {})
+        leaf.tick_once()
+        if leaf.status is Status.SUCCESS:
+            row, col = robot.grid.cell_of(*leaf.blackboard["goal"].position)
+            assert clearance_field(robot.grid)[row, col] >= robot.footprint_radius_m

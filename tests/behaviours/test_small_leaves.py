@@ -7,6 +7,7 @@ from explore_bt.behaviours import (
     LEAVES,
     ChooseHome,
     GivenUp,
+    GiveUpGoal,
     RecordWaypoint,
     ResetHalfPlanes,
     StopRequested,
@@ -167,3 +168,12 @@ def test_scraps_and_what_was_looked_at_in_vain_stay_given_up(robot: FakeRobot, b
     TakeBack("take back", robot, board, {"at_least": 0.3}).tick_once()
     assert board["given_up"] == (seen, scrap)
     assert robot.avoided == []
+
+
+def test_giving_up_writes_place_reason_and_what_was_expected(robot: FakeRobot, board: Blackboard) -> None:
+    board.write("goal", Waypoint(Pose2(1.0, 2.0, 0.0), expected_gain_m2=0.4))
+    board.write("failure", "held")
+    leaf = GiveUpGoal("give up", robot, board)
+    leaf.tick_once()
+    assert leaf.feedback_message == "(1.0, 2.0) is given up: held"
+    assert board["given_up"] == (GivenUp((1.0, 2.0), "held", gain_m2=0.4),)

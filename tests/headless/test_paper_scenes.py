@@ -13,20 +13,15 @@ from tests.headless.drive import advanced, explore, look
 STRIDE_M = 1.5
 
 
-def floor(length_m: float, width_m: float) -> np.ndarray:
-    """Cells of 0.1 m within walls."""
-    cells = np.full((round(width_m * 10) + 2, round(length_m * 10) + 2), FREE, dtype=np.int8)
-    cells[[0, -1], :] = OCCUPIED
-    cells[:, [0, -1]] = OCCUPIED
-    return cells
-
-
 def grid_of(cells: np.ndarray) -> OccupancyGrid:
     return OccupancyGrid(cells, 0.1, (0.0, 0.0))
 
 
 def corridor() -> OccupancyGrid:
-    return grid_of(floor(20.0, 1.8))
+    """20 × 1.8 m within walls."""
+    cells = np.full((20, 202), OCCUPIED, dtype=np.int8)
+    cells[1:-1, 1:-1] = FREE
+    return grid_of(cells)
 
 
 def test_along_a_corridor_it_goes_forward_from_stride_to_stride() -> None:
