@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from explore_bt.exploration.clearance import clearance_field
@@ -32,8 +34,11 @@ def warm_up() -> None:
         travel_m = travel_field(clearance_m, (12, 10), 0.2, grid.resolution_m, clearance_weight=weight)
     visible_unknown_area(grid, (1.0, 1.0), 1.2)
     scan_of_grid(grid, Pose2(1.0, 1.0, 0.0), 1.2)
-    places, outlooks = ViewPlaces(grid, clearance_m, travel_m, radius_m=0.2), Outlooks()
-    for _ in range(2):  # from the second time on it compares with the first
+    cells = cells.copy()
+    cells[2:22, 2] = UNKNOWN
+    outlooks = Outlooks()
+    for state in (grid, replace(grid, cells=cells)):  # the second time it looks where the map has changed
+        places = ViewPlaces(state, clearance_m, travel_m, radius_m=0.2)
         chosen = choose_views(places, outlooks, (1.0, 1.0), 1.2, TourTaste())
     order_views(chosen, lambda _: 0.0, TourTaste())
     what_remains(grid, clearance_m, travel_m, 0.2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ __all__ = ["Outlook", "Outlooks"]
 _TURN = 2.0 * math.pi
 _NOTHING = np.empty(0, dtype=np.int32)
 _TILE = 4
+_TILE_RADIUS = 0.5 * math.sqrt(2.0) * _TILE
 _RAYS_PER_CELL = 0.6
 
 
@@ -48,13 +50,13 @@ def _rays(reach):  # type: ignore[no-untyped-def]  # numba kernel
     """Cells on every ray from a cell's middle; at the circle of reach rays are 1.7 cells apart.
 
     After Amanatides & Woo, 1987. All rays one after the other: where each begins, then for each cell its row
-    and column from the eye's, and the length of the ray in it.
+    and column from the eye's, how far from the eye the ray enters it, and the length of the ray in it.
     """
     count = int(_RAYS_PER_CELL * _TURN * reach)
     begin = np.zeros(count + 1, dtype=np.int64)
     size = count * (3 * int(reach) + 6)
     rows, cols = np.empty(size, dtype=np.int32), np.empty(size, dtype=np.int32)
-    lengths = np.empty(size)
+    entries, lengths = np.empty(size), np.empty(size)
     n = 0
     for k in range(count):
         angle = _TURN * k / count
@@ -66,7 +68,7 @@ def _rays(reach):  # type: ignore[no-untyped-def]  # numba kernel
         entry = 0.0
         while entry <= reach:
             leave = min(next_row, next_col)
-            rows[n], cols[n], lengths[n] = row, col, leave - entry
+            rows[n], cols[n], entries[n], lengths[n] = row, col, entry, leave - entry
             n += 1
             entry = leave
             if next_col <= next_row:
@@ -76,48 +78,85 @@ def _rays(reach):  # type: ignore[no-untyped-def]  # numba kernel
                 row += 1 if dv > 0.0 else -1
                 next_row += per_row
         begin[k + 1] = n
-    return begin, rows[:n].copy(), cols[:n].copy(), lengths[:n].copy()
+    return begin, rows[:n].copy(), cols[:n].copy(), entries[:n].copy(), lengths[:n].copy()
 
 
 @njit(cache=True)
-def _look(cells, eyes, depth, rays, ray_rows, ray_cols, lengths):  # type: ignore[no-untyped-def]  # numba kernel
+def _look(cells, steps_free, eyes, depth, rays, ray_rows, ray_cols, entries, lengths):  # type: ignore[no-untyped-def]  # numba kernel
     """Unknown cells in view of each of (N, 2) cells, as far as ``depth`` cells into the unknown.
 
-    Also the tiles of 4 × 4 cells that its rays touch: nothing outside of these has a say.
+    A step along a ray changes row or column by one, so as many steps as ``steps_free`` says pass over free
+    cells only. Also (N, rays) how far from the eye the last cell that had a say begins.
     """
     rows, cols = cells.shape
     seen = np.full(rows * cols, -1, dtype=np.int32)
     begin = np.zeros(eyes.shape[0] + 1, dtype=np.int64)
-    begin_tiles = begin.copy()
-    out, tiles = np.empty(4096, dtype=np.int32), np.empty(4096, dtype=np.int32)
-    wide = cols // _TILE + 1
-    touched = np.full((rows // _TILE + 1) * wide, -1, dtype=np.int32)
-    count, count_tiles = 0, 0
+    ends = np.full((eyes.shape[0], rays.size - 1), np.inf, dtype=np.float32)
+    out = np.empty(4096, dtype=np.int32)
+    count = 0
     for i in range(eyes.shape[0]):
         for k in range(rays.size - 1):
-            passed = 0.0
-            for j in range(rays[k], rays[k + 1]):
+            passed, j = 0.0, rays[k]
+            while j < rays[k + 1]:
                 row, col = eyes[i, 0] + ray_rows[j], eyes[i, 1] + ray_cols[j]
-                if not (0 <= row < rows and 0 <= col < cols):
-                    break
-                tile = (row // _TILE) * wide + col // _TILE
-                if touched[tile] != i:
-                    touched[tile] = i
-                    tiles = _appended(tiles, count_tiles, tile)
-                    count_tiles += 1
-                value = cells[row, col]
-                if value == FREE:
+                outside = not (0 <= row < rows and 0 <= col < cols)
+                if not outside and cells[row, col] == FREE:
+                    j += steps_free[row, col]
                     continue
-                if value == OCCUPIED or passed >= depth:
+                if outside or cells[row, col] == OCCUPIED or passed >= depth:
+                    ends[i, k] = entries[j]
                     break
                 passed += lengths[j]
+                j += 1
                 flat = row * cols + col
                 if seen[flat] != i:
                     seen[flat] = i
                     out = _appended(out, count, flat)
                     count += 1
-        begin[i + 1], begin_tiles[i + 1] = count, count_tiles
-    return begin, out[:count].copy(), begin_tiles, tiles[:count_tiles].copy()
+        begin[i + 1] = count
+    return begin, out[:count].copy(), ends
+
+
+@njit(cache=True)
+def _cones(reach):  # type: ignore[no-untyped-def]  # numba kernel
+    """For every tile of 4 × 4 cells round an eye: first and last ray that may meet it, and how far off it is.
+
+    By row and column of its first cell from the eye's, plus reach and 4. The circle about the tile stands for
+    it; one that holds the eye has all rays.
+    """
+    count = int(_RAYS_PER_CELL * _TURN * reach)
+    span = int(reach) + _TILE
+    first = np.zeros((2 * span + 1, 2 * span + 1), dtype=np.int32)
+    last, near = np.full_like(first, count - 1), np.zeros(first.shape, dtype=np.float32)
+    for row in range(-span, span + 1):
+        for col in range(-span, span + 1):
+            y, x = row + 0.5 * (_TILE - 1), col + 0.5 * (_TILE - 1)
+            away = math.hypot(x, y)
+            if away > _TILE_RADIUS:
+                middle, half = math.atan2(y, x) % _TURN, math.asin(_TILE_RADIUS / away)
+                first[row + span, col + span] = math.floor((middle - half) / _TURN * count)
+                last[row + span, col + span] = math.ceil((middle + half) / _TURN * count)
+                near[row + span, col + span] = away - _TILE_RADIUS - 0.01
+    return first, last, near
+
+
+@njit(cache=True)
+def _may_meet(eyes, ends, tiles, reach, first, last, near):  # type: ignore[no-untyped-def]  # numba kernel
+    """Which of (N, 2) eyes have a ray that may come to one of (M, 2) tiles."""
+    span, count = int(reach) + _TILE, ends.shape[1]
+    meets = np.zeros(eyes.shape[0], dtype=np.bool_)
+    for i in range(eyes.shape[0]):
+        for t in range(tiles.shape[0]):
+            row, col = _TILE * tiles[t, 0] - eyes[i, 0] + span, _TILE * tiles[t, 1] - eyes[i, 1] + span
+            if not (0 <= row <= 2 * span and 0 <= col <= 2 * span) or near[row, col] > reach:
+                continue
+            for k in range(first[row, col], last[row, col] + 1):
+                if ends[i, k % count] >= near[row, col]:
+                    meets[i] = True
+                    break
+            if meets[i]:
+                break
+    return meets
 
 
 @njit(cache=True)
@@ -154,26 +193,14 @@ def _within(at, reach):  # type: ignore[no-untyped-def]  # numba kernel
 
 
 @njit(cache=True)
-def _touched(begin, tiles, changed):  # type: ignore[no-untyped-def]  # numba kernel
-    """Which places have a changed tile among those that their rays touch."""
-    touched = np.zeros(begin.size - 1, dtype=np.bool_)
-    for i in range(begin.size - 1):
-        for k in range(begin[i], begin[i + 1]):
-            if changed[tiles[k]]:
-                touched[i] = True
-                break
-    return touched
-
-
-@njit(cache=True)
 def _changed_tiles(before, after):  # type: ignore[no-untyped-def]  # numba kernel
+    """Tiles of 4 × 4 cells with a cell that differs, as a mask."""
     rows, cols = after.shape
-    wide = cols // _TILE + 1
-    changed = np.zeros((rows // _TILE + 1) * wide, dtype=np.bool_)
+    changed = np.zeros((rows // _TILE + 1, cols // _TILE + 1), dtype=np.bool_)
     for row in range(rows):
         for col in range(cols):
             if before[row, col] != after[row, col]:
-                changed[row // _TILE * wide + col // _TILE] = True
+                changed[row // _TILE, col // _TILE] = True
     return changed
 
 
@@ -185,20 +212,29 @@ def _joined(parts: list[NDArray[np.int32]]) -> Outlook:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Known:
-    """What one place sees, and the tiles that this depends on."""
+    """What one place sees, and how far along each ray the map has a say in that."""
 
     cells: NDArray[np.int32]
-    tiles: NDArray[np.int32]
+    ends: NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class _Rays:
+    """What depends on the lidar's reach alone."""
+
+    reach: float
+    steps: tuple[NDArray[np.generic], ...]
+    cones: tuple[NDArray[np.generic], ...]
 
 
 class Outlooks:
-    """Remembers what each place sees; looks again only where a ray of it met something that has changed."""
+    """Remembers what each place sees; looks again only where a ray of it may have met what has changed."""
 
     def __init__(self) -> None:
         self._cells: NDArray[np.int8] = np.empty((0, 0), dtype=np.int8)
         self._first = (0, 0)
         self._known: dict[tuple[int, int], _Known] = {}
-        self._rays: dict[float, tuple[NDArray[np.generic], ...]] = {}
+        self._rays: _Rays | None = None
 
     def look(
         self,
@@ -220,7 +256,8 @@ class Outlooks:
             first: the map's first cell on a lattice that does not move when the map grows.
             near_cells: (N,) how near a frontier has to be to each place; the lidar's range by default.
         """
-        self._forget_changed(cells, first)
+        rays = self._rays_of(reach_cells)
+        self._forget_changed(cells, first, rays)
         keys = [(row, col) for row, col in places.tolist()]
         near_cells = np.full(len(keys), reach_cells) if near_cells is None else near_cells
         useful, frontier = np.zeros(len(keys), dtype=np.bool_), _frontier_blocks(read_only(cells))
@@ -229,25 +266,37 @@ class Outlooks:
             useful |= (near_cells == cells_away) & near[places[:, 0] // 8, places[:, 1] // 8]
         fresh = [i for i, key in enumerate(keys) if useful[i] and key not in self._known]
         if fresh:
-            if reach_cells not in self._rays:
-                self._rays = {reach_cells: _rays(reach_cells)}
-            begin, seen, begin_tiles, tiles = _look(
-                read_only(cells), read_only(places[fresh]), depth_cells, *self._rays[reach_cells]
+            begin, seen, ends = _look(
+                read_only(cells), _steps_free(cells), read_only(places[fresh]), depth_cells, *rays.steps
             )
             for k, i in enumerate(fresh):
-                self._known[keys[i]] = _Known(
-                    seen[begin[k] : begin[k + 1]], tiles[begin_tiles[k] : begin_tiles[k + 1]]
-                )
+                self._known[keys[i]] = _Known(seen[begin[k] : begin[k + 1]], ends[k])
         return _joined([self._known[key].cells if useful[i] else _NOTHING for i, key in enumerate(keys)])
 
-    def _forget_changed(self, cells: NDArray[np.int8], first: tuple[int, int]) -> None:
+    def _rays_of(self, reach: float) -> _Rays:
+        if self._rays is None or self._rays.reach != reach:
+            self._rays = _Rays(reach, _rays(reach), _cones(reach))
+        return self._rays
+
+    def _forget_changed(self, cells: NDArray[np.int8], first: tuple[int, int], rays: _Rays) -> None:
         before, self._cells = self._cells, cells
         if before.shape != cells.shape or first != self._first:
             self._known.clear()
             self._first = first
-        elif self._known:
-            changed = _changed_tiles(read_only(before), read_only(cells))
-            tiles = _joined([known.tiles for known in self._known.values()])
-            stale = _touched(tiles.begin, tiles.cells, changed)
-            for key in [key for key, is_stale in zip(self._known, stale, strict=True) if is_stale]:
+            return
+        tiles = np.argwhere(_changed_tiles(read_only(before), read_only(cells)))
+        if not len(tiles):
+            return
+        low, high = _TILE * tiles.min(axis=0) - rays.reach, _TILE * (tiles.max(axis=0) + 1) + rays.reach
+        near = [key for key in self._known if low[0] <= key[0] <= high[0] and low[1] <= key[1] <= high[1]]
+        if near:
+            ends = np.array([self._known[key].ends for key in near])
+            stale = _may_meet(np.array(near), ends, tiles, rays.reach, *rays.cones)
+            for key in [key for key, is_stale in zip(near, stale, strict=True) if is_stale]:
                 del self._known[key]
+
+
+def _steps_free(cells: NDArray[np.int8]) -> NDArray[np.uint8]:
+    """Rows and columns together to the nearest cell that is not free, or to the map's edge; 255 at most."""
+    free = np.pad((cells == FREE).view(np.uint8), 1)
+    return cv2.distanceTransform(free, cv2.DIST_L1, 3, dstType=cv2.CV_8U)[1:-1, 1:-1].copy()

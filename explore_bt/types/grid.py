@@ -34,6 +34,28 @@ class GridWindow:
         """Indices of the window in the grid's array."""
         return (slice(self.row0, self.row1), slice(self.col0, self.col1))
 
+    def grown(self, by: int, shape: tuple[int, int]) -> GridWindow:
+        """The window and ``by`` cells more on every side, as far as a grid of that shape goes."""
+        return GridWindow(
+            max(self.row0 - by, 0),
+            max(self.col0 - by, 0),
+            min(self.row1 + by, shape[0]),
+            min(self.col1 + by, shape[1]),
+        )
+
+    def joined(self, other: GridWindow) -> GridWindow:
+        """The smallest window that holds both."""
+        return GridWindow(
+            min(self.row0, other.row0),
+            min(self.col0, other.col0),
+            max(self.row1, other.row1),
+            max(self.col1, other.col1),
+        )
+
+    def moved(self, rows: int, cols: int) -> GridWindow:
+        """The window so many rows and columns further."""
+        return GridWindow(self.row0 + rows, self.col0 + cols, self.row1 + rows, self.col1 + cols)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OccupancyGrid:

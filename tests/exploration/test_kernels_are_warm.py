@@ -28,9 +28,11 @@ KERNELS = (
     escape._climb,
     gain._see_from_each,
     outlook._changed_tiles,
+    outlook._cones,
     outlook._frontier_blocks,
     outlook._look,
-    outlook._touched,
+    outlook._may_meet,
+    outlook._rays,
     outlook._within,
     passage._flood,
     tour._improve,
@@ -44,8 +46,10 @@ def test_after_warm_up_nothing_is_left_to_compile():
     assert all(count > 0 for count in compiled)
     rng = np.random.default_rng(0)
     wide = rng.choice([FREE, FREE, UNKNOWN], (60, 80)).astype(np.int8)
+    later = wide.copy()
+    later[:20] = FREE
     outlooks = Outlooks()
-    for cells in (wide.copy(), wide[::2, ::2], np.asfortranarray(wide)):
+    for cells in (wide.copy(), later, wide[::2, ::2], np.asfortranarray(wide)):
         grid = OccupancyGrid(cells, 0.05, (0.0, 0.0))
         clearance = clearance_field(grid)
         clearance.flags.writeable = False

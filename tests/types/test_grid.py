@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from explore_bt.types import FREE, UNKNOWN, OccupancyGrid
+from explore_bt.types import FREE, UNKNOWN, GridWindow, OccupancyGrid
 
 
 def grid_of(rows: int, cols: int, resolution: float, origin: tuple[float, float]) -> OccupancyGrid:
@@ -30,3 +30,43 @@ def test_outside_the_grid_is_unknown() -> None:
 def test_a_grid_cannot_be_written_to() -> None:
     with pytest.raises(ValueError, match="read-only"):
         grid_of(2, 2, 0.5, (0.0, 0.0)).cells[0, 0] = 1
+
+
+def marked(window: GridWindow, shape: tuple[int, int] = (20, 20)) -> np.ndarray:
+    cells = np.zeros(shape, dtype=np.uint8)
+    cells[window.slices] = 1
+    return cells
+
+
+windows = st.tuples(*[st.integers(0, 16)] * 2, *[st.integers(1, 4)] * 2).map(
+    lambda at: GridWindow(at[0], at[1], at[0] + at[2], at[1] + at[3])
+)
+
+
+@given(windows, st.integers(0, 5))
+def test_a_grown_window_holds_every_cell_that_near_and_stays_in_the_grid(window: GridWindow, by: int) -> None:
+    near = np.array(
+        [
+            [window.row0 - by <= row < window.row1 + by and window.col0 - by <= col < window.col1 + by]
+            for row in range(20)
+            for col in range(20)
+        ]
+    ).reshape(20, 20)
+    np.testing.assert_array_equal(marked(window.grown(by, (20, 20))), near)
+
+
+@given(windows, windows)
+def test_joined_windows_hold_both_and_no_row_or_column_more(one: GridWindow, other: GridWindow) -> None:
+    both = marked(one) | marked(other)
+    joined = marked(one.joined(other))
+    assert (joined >= both).all()
+    for axis in (0, 1):
+        edges = np.flatnonzero(both.any(axis=axis))
+        assert np.flatnonzero(joined.any(axis=axis)).tolist() == list(range(edges[0], edges[-1] + 1))
+
+
+@given(windows, st.integers(0, 5), st.integers(0, 5))
+def test_a_moved_window_marks_the_cells_moved(window: GridWindow, rows: int, cols: int) -> None:
+    expected = np.zeros((30, 30), dtype=np.uint8)
+    expected[rows : rows + 20, cols : cols + 20] = marked(window)
+    np.testing.assert_array_equal(marked(window.moved(rows, cols), (30, 30)), expected)

@@ -83,16 +83,7 @@ class Terrain:
     def fall_behind(self, window: GridWindow) -> None:
         """The transform has changed within a window; ``catch_up`` before any field is read."""
         one = self._behind
-        self._behind = (
-            window
-            if one is None
-            else GridWindow(
-                min(one.row0, window.row0),
-                min(one.col0, window.col0),
-                max(one.row1, window.row1),
-                max(one.col1, window.col1),
-            )
-        )
+        self._behind = window if one is None else one.joined(window)
 
     def catch_up(self, grid: OccupancyGrid) -> None:
         """Bring every field that was computed up to date with the transform of ``grid``, in place."""
@@ -108,14 +99,9 @@ class Terrain:
         if "passable" in fields:
             self.passable[window.slices] = squared >= self.min_squared
         if "skeleton" in fields:
-            rows, cols = self.transform.squared.shape
-            around = GridWindow(  # a cell's mark depends on its neighbours
-                max(window.row0 - 1, 0),
-                max(window.col0 - 1, 0),
-                min(window.row1 + 1, rows),
-                min(window.col1 + 1, cols),
-            )
-            self._mark(around)
+            self._mark(
+                window.grown(1, self.transform.squared.shape)
+            )  # a cell's mark depends on its neighbours
 
     def grow(self, transform: FeatureTransform, offset: tuple[int, int]) -> None:
         """Take the place in a larger map whose new cells are all obstacles; the rest is as it was.
@@ -127,8 +113,7 @@ class Terrain:
         old, shape = self.transform.squared.shape, transform.squared.shape
         self.transform = transform
         if self._behind is not None:
-            (row, col), one = offset, self._behind
-            self._behind = GridWindow(one.row0 + row, one.col0 + col, one.row1 + row, one.col1 + col)
+            self._behind = self._behind.moved(*offset)
         fields = vars(self)
         fields.pop("component", None)
         for name in fields.keys() & {"clearance_m", "passable", "skeleton"}:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Mapping
+from functools import reduce
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -69,9 +70,7 @@ class Canvas:
         cells = self._cells[row0:row1, col0:col1].copy()  # one memory layout, so that kernels compile once
         changed = painter(cells, np.asarray(low * self._cell_m, dtype=np.float64))
         self._cells[row0:row1, col0:col1] = cells
-        self._note(
-            GridWindow(changed.row0 + row0, changed.col0 + col0, changed.row1 + row0, changed.col1 + col0)
-        )
+        self._note(changed.moved(row0, col0))
 
     def redraw(self, sweeps: list[tuple[Sweep, Pose2]]) -> None:
         """Forget all evidence and draw these sweeps in this order; the canvas never shrinks."""
@@ -99,12 +98,7 @@ class Canvas:
         if revision < self._whole_since or revision > self._revision or revision + 1 < oldest:
             return None
         windows = [window for at, window in self._windows if at > revision]
-        return GridWindow(
-            min(w.row0 for w in windows),
-            min(w.col0 for w in windows),
-            max(w.row1 for w in windows),
-            max(w.col1 for w in windows),
-        )
+        return reduce(GridWindow.joined, windows)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """All that ``restore`` needs."""
