@@ -160,7 +160,7 @@ class DriveTo(Leaf):
             return False
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
         area = visible_unknown_area(
-            self.robot.view().grid,
+            self.robot.view().ground.grid,
             self.goal.position,
             self.robot.lidar_range_m,
             depth_m=math.inf if self.depth is None else self.depth,

@@ -14,6 +14,7 @@ from explore_bt.behaviours.search import HERE_M, Search
 from explore_bt.exploration import (
     HalfPlaneHistory,
     Outlooks,
+    Reach,
     TourTaste,
     View,
     ViewPlaces,
@@ -102,11 +103,11 @@ class FindView(Search):
             (max(least_m, 0.0), math.inf),
             (least_m, math.inf),
         )
-        travel_m: dict[float, NDArray[np.float32]] = {}
+        reaches: dict[float, Reach] = {}
         for margin_m, dense_m in dict.fromkeys(passes):
-            if margin_m not in travel_m:
-                travel_m[margin_m] = self.travel_m(self.here().xy, margin_m)
-            places = self._places(travel_m[margin_m], margin_m, dense_m, more)
+            if margin_m not in reaches:
+                reaches[margin_m] = self._reach(margin_m)
+            places = ViewPlaces(reaches[margin_m], dense_m=dense_m, more=more)
             for _ in range(_TRIES):
                 chosen = self._choose(places)
                 if self._is_too_little(chosen):
@@ -137,25 +138,15 @@ class FindView(Search):
         goal = self._present_goal
         return np.array([*self._safe_waypoints(), *([goal] if goal else [])]).reshape(-1, 2)
 
-    def _places(
-        self, travel_m: NDArray[np.float32], margin_m: float, dense_m: float, more: NDArray[np.float64]
-    ) -> ViewPlaces:
+    def _reach(self, margin_m: float) -> Reach:
         view = self.robot.view()
-        return ViewPlaces(
-            view.grid,
-            view.clearance_m,
-            travel_m,
-            radius_m=self.robot.footprint_radius_m + margin_m,
-            dense_m=dense_m,
-            more=more,
-        )
+        return Reach(view.ground, view.clearance_m, self.here().xy, self.robot.footprint_radius_m + margin_m)
 
     def _choose(self, places: ViewPlaces) -> ViewSet:
         tried = np.array([place.position for place in self.tried()]).reshape(-1, 2)
         return choose_views(
             places.without(tried),
             self._outlooks,
-            self.here().xy,
             self.robot.lidar_range_m,
             self._taste,
             self._present_goal,
@@ -233,5 +224,5 @@ class FindView(Search):
                 yield place.position, place.reason
 
     def _area_m2(self, place: tuple[float, float]) -> float:
-        grid, range_m = self.robot.view().grid, self.robot.lidar_range_m
-        return visible_unknown_area(grid, place, range_m, depth_m=self.depth)
+        blocks, range_m = self.robot.view().ground.grid, self.robot.lidar_range_m
+        return visible_unknown_area(blocks, place, range_m, depth_m=self.depth)

@@ -21,7 +21,7 @@ One decision takes the steps of ALGORITHM.md in this order::
 
 What the paper leaves open is answered on the map::
 
-    OccupancyGrid ──► clearance_field ──► travel_field ──► ViewPlaces ──► choose_views ──► order_views
+    OccupancyGrid ──► Ground ──► Reach ──► ViewPlaces ──► choose_views ──► order_views
           └─────────► find_frontiers ──► what_remains, once nothing is left to be seen
 
 ``CoverageMeter`` and ``ate_rmse_m`` measure a run against the truth. ``warm_up`` compiles the kernels.
@@ -29,16 +29,18 @@ What the paper leaves open is answered on the map::
 
 from explore_bt.exploration.alignment import align_se2, ate_rmse_m
 from explore_bt.exploration.arguments import ArgumentError
-from explore_bt.exploration.clearance import clearance_at, clearance_field
+from explore_bt.exploration.clearance import Clearances, clearance_at, clearance_field
 from explore_bt.exploration.compilation import warm_up
 from explore_bt.exploration.coverage import CoverageMeter
 from explore_bt.exploration.free_sectors import FreeSector, find_free_sectors, order_by_safety
 from explore_bt.exploration.frontier import Frontier, find_frontiers, frontier_mask
 from explore_bt.exploration.gain import gain_many, visible_unknown_area
 from explore_bt.exploration.grid_scan import scan_of_grid
+from explore_bt.exploration.ground import Ground
 from explore_bt.exploration.half_plane import HalfPlane, HalfPlaneHistory
 from explore_bt.exploration.outlook import Outlooks
 from explore_bt.exploration.passage import passage_field
+from explore_bt.exploration.reach import Reach
 from explore_bt.exploration.remains import sentences, what_remains
 from explore_bt.exploration.retrace import way_back
 from explore_bt.exploration.revisit import is_allowed, repeated_visit
@@ -50,12 +52,15 @@ from explore_bt.exploration.waypoint import next_waypoint
 
 __all__ = [
     "ArgumentError",
+    "Clearances",
     "CoverageMeter",
     "FreeSector",
     "Frontier",
+    "Ground",
     "HalfPlane",
     "HalfPlaneHistory",
     "Outlooks",
+    "Reach",
     "TourTaste",
     "View",
     "ViewPlaces",

@@ -9,9 +9,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from explore_bt.exploration.kernel_input import read_only
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from explore_bt.exploration.windows import changed_window
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
 
-__all__ = ["Blocks", "pooled_map"]
+__all__ = ["Blocks", "PooledMaps", "pooled_map"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,3 +95,40 @@ def pooled_map(grid: OccupancyGrid, blocks: Blocks) -> NDArray[np.int8]:
     """(rows, columns) int8 of blocks: ``OCCUPIED``, ``FREE`` or ``UNKNOWN``."""
     row0, col0 = blocks.shift
     return _pool(read_only(grid.cells), blocks.side, row0, col0, blocks.shape[0], blocks.shape[1])
+
+
+class PooledMaps:
+    """Pooled maps of the states of a map, at a cost that follows what has changed since the last one."""
+
+    def __init__(self) -> None:
+        self._last: tuple[OccupancyGrid, Blocks, NDArray[np.int8]] | None = None
+
+    def of(self, grid: OccupancyGrid, blocks: Blocks) -> NDArray[np.int8]:
+        """The same as ``pooled_map(grid, blocks)``."""
+        if self._last is None or self._last[1] != blocks or self._last[0].shape != grid.shape:
+            pooled = pooled_map(grid, blocks)
+        else:
+            pooled = _pooled_later(*self._last, grid)
+        self._last = (grid, blocks, pooled)
+        return pooled
+
+
+def _pooled_later(
+    before: OccupancyGrid, blocks: Blocks, pooled: NDArray[np.int8], grid: OccupancyGrid
+) -> NDArray[np.int8]:
+    window = changed_window(before.cells != grid.cells)
+    if window.is_empty:
+        return pooled
+    side, (row0, col0) = blocks.side, blocks.shift
+    at = GridWindow(
+        (window.row0 + row0) // side,
+        (window.col0 + col0) // side,
+        (window.row1 - 1 + row0) // side + 1,
+        (window.col1 - 1 + col0) // side + 1,
+    )
+    first = (max(0, at.row0 * side - row0), max(0, at.col0 * side - col0))
+    cells = grid.cells[first[0] : at.row1 * side - row0, first[1] : at.col1 * side - col0]
+    shift = (row0 + first[0] - at.row0 * side, col0 + first[1] - at.col0 * side)
+    pooled = pooled.copy()
+    pooled[at.slices] = _pool(read_only(cells), side, *shift, at.row1 - at.row0, at.col1 - at.col0)
+    return pooled

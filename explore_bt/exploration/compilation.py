@@ -9,7 +9,9 @@ import numpy as np
 from explore_bt.exploration.clearance import clearance_field
 from explore_bt.exploration.gain import visible_unknown_area
 from explore_bt.exploration.grid_scan import scan_of_grid
+from explore_bt.exploration.ground import Ground
 from explore_bt.exploration.outlook import Outlooks
+from explore_bt.exploration.reach import Reach
 from explore_bt.exploration.remains import what_remains
 from explore_bt.exploration.travel import travel_field
 from explore_bt.exploration.view_places import ViewPlaces
@@ -38,7 +40,7 @@ def warm_up() -> None:
     cells[2:22, 2] = UNKNOWN
     outlooks = Outlooks()
     for state in (grid, replace(grid, cells=cells)):  # the second time it looks where the map has changed
-        places = ViewPlaces(state, clearance_m, travel_m, radius_m=0.2)
-        chosen = choose_views(places, outlooks, (1.0, 1.0), 1.2, TourTaste())
+        places = ViewPlaces(Reach(Ground(state), clearance_m, (1.0, 1.0), 0.2))
+        chosen = choose_views(places, outlooks, 1.2, TourTaste())
     order_views(chosen, lambda _: 0.0, TourTaste())
     what_remains(grid, clearance_m, travel_m, 0.2)

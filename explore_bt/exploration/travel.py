@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from explore_bt.exploration.arguments import require_at_least, require_positive
 from explore_bt.exploration.escape import ways_out
 
-__all__ = ["nearest_reaching_cell", "travel_field"]
+__all__ = ["Travel", "nearest_reaching_cell", "travel_field"]
 
 _DIAGONAL = math.sqrt(2.0)
 
@@ -63,6 +63,94 @@ def _spread(passable, width, distance, factor, seeds, bucket_count, most):  # ty
         level += 1
 
 
+@njit(cache=True)
+def _flood(passable, width, seeds):  # type: ignore[no-untyped-def]  # numba kernel
+    """All that steps to the four neighbours come to over a padded, flattened mask.
+
+    A diagonal step that needs both cells beside it comes nowhere else.
+    """
+    reached = np.zeros(passable.size, dtype=np.bool_)
+    queue = np.empty(passable.size, dtype=np.int32)
+    begin, end = 0, 0
+    for seed in seeds:
+        reached[seed] = True
+        queue[end] = seed
+        end += 1
+    while begin < end:
+        here = queue[begin]
+        begin += 1
+        for there in (here - width, here - 1, here + 1, here + width):
+            if passable[there] and not reached[there]:
+                reached[there] = True
+                queue[end] = there
+                end += 1
+    return reached
+
+
+class Travel:
+    """Ways over one floor, from any start; the arguments are those of :func:`travel_field`."""
+
+    def __init__(
+        self,
+        clearance_m: NDArray[np.float32],
+        radius_m: float,
+        resolution_m: float,
+        *,
+        clearance_weight: float = 0.0,
+        comfort_m: float = 0.6,
+        escape_m: float = 0.6,
+    ) -> None:
+        """Prepare what is the same for every start; raises as :func:`travel_field`."""
+        require_positive(resolution_m=resolution_m)
+        require_at_least(0, radius_m=radius_m, clearance_weight=clearance_weight, escape_m=escape_m)
+        self._clearance_m = clearance_m
+        self._radius_m, self._resolution_m, self._escape_m = radius_m, resolution_m, escape_m
+        self._passable = np.zeros((clearance_m.shape[0] + 2, clearance_m.shape[1] + 2), dtype=np.bool_)
+        np.logical_and(clearance_m >= radius_m, clearance_m > 0.0, out=self._passable[1:-1, 1:-1])
+        self._factors = _factors(clearance_m, clearance_weight, comfort_m)
+        self._buckets = math.ceil(_DIAGONAL * (1.0 + clearance_weight)) + 2
+
+    def field(
+        self, start_cells: NDArray[np.integer] | tuple[int, int], most_m: float = math.inf
+    ) -> NDArray[np.float32]:
+        """(rows, cols) float32, metres; see :func:`travel_field`."""
+        starts, seeds, climbed = self._ways_out(start_cells)
+        distance = np.full(self._passable.shape, np.inf)
+        distance[seeds[:, 0] + 1, seeds[:, 1] + 1] = climbed
+        width = self._passable.shape[1]
+        _spread(
+            self._passable.ravel(),
+            width,
+            distance.ravel(),
+            self._factors,
+            (seeds + 1) @ np.array([width, 1]),
+            self._buckets,
+            most_m / self._resolution_m,
+        )
+        field = np.multiply(distance[1:-1, 1:-1], self._resolution_m, dtype=np.float32, casting="same_kind")
+        field[starts[:, 0], starts[:, 1]] = 0.0
+        return field
+
+    def reached(self, start_cells: NDArray[np.integer] | tuple[int, int]) -> NDArray[np.bool_]:
+        """(rows, cols) bool: where ``field`` is finite."""
+        starts, seeds, _ = self._ways_out(start_cells)
+        width = self._passable.shape[1]
+        flat = _flood(self._passable.ravel(), width, (seeds + 1) @ np.array([width, 1]))
+        reached = flat.reshape(self._passable.shape)[1:-1, 1:-1].copy()
+        reached[starts[:, 0], starts[:, 1]] = True
+        return reached
+
+    def _ways_out(
+        self, start_cells: NDArray[np.integer] | tuple[int, int]
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        """Starts inside the grid; the first cells of the ways from them, and how far those are, in cells."""
+        starts = np.asarray(start_cells, dtype=np.int64).reshape(-1, 2)
+        starts = starts[((starts >= 0) & (starts < self._clearance_m.shape)).all(axis=1)]
+        return starts, *ways_out(
+            self._clearance_m, starts, self._radius_m, self._escape_m / self._resolution_m
+        )
+
+
 def _factors(clearance_m: NDArray[np.float32], weight: float, comfort_m: float) -> NDArray[np.float32]:
     """Cost of a metre by clearance, padded and flat; empty where a metre costs a metre everywhere."""
     if weight == 0.0:
@@ -106,28 +194,15 @@ def travel_field(
     Raises:
         ArgumentError: if the resolution is not above zero, or r or the weight below zero.
     """
-    require_positive(resolution_m=resolution_m)
-    require_at_least(0, radius_m=radius_m, clearance_weight=clearance_weight, escape_m=escape_m)
-    rows, cols = clearance_m.shape
-    starts = np.asarray(start_cells, dtype=np.int64).reshape(-1, 2)
-    starts = starts[((starts >= 0) & (starts < (rows, cols))).all(axis=1)]
-    seeds, climbed = ways_out(clearance_m, starts, radius_m, escape_m / resolution_m)
-    passable = np.zeros((rows + 2, cols + 2), dtype=np.bool_)
-    np.logical_and(clearance_m >= radius_m, clearance_m > 0.0, out=passable[1:-1, 1:-1])
-    distance = np.full((rows + 2, cols + 2), np.inf)
-    distance[seeds[:, 0] + 1, seeds[:, 1] + 1] = climbed
-    _spread(
-        passable.ravel(),
-        cols + 2,
-        distance.ravel(),
-        _factors(clearance_m, clearance_weight, comfort_m),
-        (seeds + 1) @ np.array([cols + 2, 1]),
-        math.ceil(_DIAGONAL * (1.0 + clearance_weight)) + 2,
-        most_m / resolution_m,
+    travel = Travel(
+        clearance_m,
+        radius_m,
+        resolution_m,
+        clearance_weight=clearance_weight,
+        comfort_m=comfort_m,
+        escape_m=escape_m,
     )
-    field = np.multiply(distance[1:-1, 1:-1], resolution_m, dtype=np.float32, casting="same_kind")
-    field[starts[:, 0], starts[:, 1]] = 0.0
-    return field
+    return travel.field(start_cells, most_m)
 
 
 def nearest_reaching_cell(

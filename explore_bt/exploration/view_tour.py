@@ -62,7 +62,6 @@ class TourTaste:
         most: views that are ordered at a time.
         horizon_m: views farther than this (or 10 m more than the nearest) are left for later.
         approach_m: what a view costs besides the way to it.
-        clearance_weight: what a metre at the walls costs more than a roomy one.
         haste: see :func:`open_tour`.
         scrap_weight: what the least view weighs in it, beside its gain up to 3 m².
         keep_m: by how much another tour has to be shorter to turn the robot away from its goal.
@@ -73,7 +72,6 @@ class TourTaste:
     most: int = 12
     horizon_m: float = 20.0
     approach_m: float = 1.0
-    clearance_weight: float = 0.5
     haste: float = 3.0
     scrap_weight: float = 1.0
     keep_m: float = 1.0
@@ -94,7 +92,6 @@ def _count_new(begin, cells, covered, active):  # type: ignore[no-untyped-def]  
 def choose_views(
     places: ViewPlaces,
     outlooks: Outlooks,
-    here_xy: tuple[float, float],
     range_m: float,
     taste: TourTaste,
     keep_xy: tuple[float, float] | None = None,
@@ -106,21 +103,16 @@ def choose_views(
     Args:
         places: where the robot may look from.
         outlooks: remembers what they see.
-        here_xy: the robot, metres, ``map`` frame.
         range_m: the lidar's range.
         taste: see there.
         keep_xy: the present goal; it counts half as much again.
     """
     nothing = ViewSet((), np.zeros((1, 1)), 0.0)
-    if not len(places.cells):
+    if not len(places.blocks):
         return nothing
     outlook, cell_m2, size = places.look(outlooks, range_m, taste.depth_m, 0.5 * taste.min_gain_m2)
     active = np.diff(outlook.begin) * cell_m2 >= taste.min_gain_m2
-    ways = places.ways(taste.clearance_weight)
-    blocks = ways.blocks.of(places.cells)
-    here = ways.blocks.of(np.array([places.grid.cell_of(*here_xy)]))[0]
-    fields = [ways.field((int(here[0]), int(here[1])), np.inf)]
-    near = fields[0][tuple(blocks.T)].astype(np.float64)
+    near = places.travel_m
     active &= np.isfinite(near)
     if not active.any():
         return nothing
@@ -129,6 +121,7 @@ def choose_views(
     active &= near <= horizon_m
     favour = _favour(places, keep_xy)
     views: list[View] = []
+    fields = [places.reach.from_here_m]
     covered = np.zeros(size, dtype=np.bool_)
     while len(views) < taste.most:
         gain_m2 = _count_new(outlook.begin, outlook.cells, covered, active) * cell_m2
@@ -136,13 +129,13 @@ def choose_views(
         if not active.any():
             break
         best = int(np.argmax(np.where(active, favour * gain_m2 / (near + taste.approach_m), -1.0)))
-        block = (int(blocks[best, 0]), int(blocks[best, 1]))
+        row, col = places.way_blocks[best].tolist()
         x, y = places.xy[best].tolist()
-        views.append(View((x, y), float(gain_m2[best]), float(fields[0][block]), block))
+        views.append(View((x, y), float(gain_m2[best]), float(places.travel_m[best]), (row, col)))
         covered[_seen(outlook, best)] = True
         active[best] = False
-        fields.append(ways.field(block, 2.0 * horizon_m))
-        near = np.minimum(near, fields[-1][tuple(blocks.T)])
+        fields.append(places.reach.ways_m((row, col), 2.0 * horizon_m))
+        near = np.minimum(near, fields[-1][tuple(places.way_blocks.T)])
     return ViewSet(tuple(views), _between(fields, views), total_m2)
 
 
@@ -153,9 +146,9 @@ def _cover(outlook: Outlook, active: NDArray[np.bool_], size: int) -> NDArray[np
 
 
 def _favour(places: ViewPlaces, keep_xy: tuple[float, float] | None) -> NDArray[np.float64]:
-    favour = np.ones(len(places.cells))
+    favour = np.ones(len(places.blocks))
     if keep_xy is not None:
-        favour[np.hypot(*(places.xy - keep_xy).T) < places.grid.resolution_m] = _KEPT_WORTH
+        favour[np.hypot(*(places.xy - keep_xy).T) < 0.5 * places.reach.ground.grid.resolution_m] = _KEPT_WORTH
     return favour
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from explore_bt.exploration import scan_of_grid
 from explore_bt.headless.grid_pilot import GridPilot
-from explore_bt.interfaces import MapView, Planner
+from explore_bt.interfaces import MapMemory, MapView, Planner
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.types import Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
@@ -39,6 +39,7 @@ class GridRobot:
         self._pose = self.home = Pose2.identity()
         self._grid: OccupancyGrid
         self._view: MapView | None = None
+        self._map_memory = MapMemory()
         self._tight = TightPlaces()
         self._scan: Scan2D | None = None
         self._track: list[Pose2] = []
@@ -77,7 +78,7 @@ class GridRobot:
         """The map that was reported, with the places that proved too tight closed."""
         grid = self._tight.mark(self._grid)
         if self._view is None or grid is not self._view.grid:
-            self._view = MapView(grid)
+            self._view = MapView(grid, self._map_memory)
         return self._view
 
     def scan(self) -> Scan2D | None:

@@ -8,23 +8,38 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.exploration.clearance import clearance_field
+from explore_bt.exploration.clearance import Clearances
+from explore_bt.exploration.ground import Ground, GroundMemory
 from explore_bt.interfaces.controller import ControlOutput
 from explore_bt.types import Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
-__all__ = ["MapView", "Pilot", "RobotServices"]
+__all__ = ["MapMemory", "MapView", "Pilot", "RobotServices"]
+
+
+class MapMemory:
+    """What makes deriving things from the next state of a map cheap."""
+
+    def __init__(self) -> None:
+        self.clearances, self.ground = Clearances(), GroundMemory()
 
 
 class MapView:
     """One revision of the map with what is often derived from it, computed at most once."""
 
-    def __init__(self, grid: OccupancyGrid) -> None:
+    def __init__(self, grid: OccupancyGrid, memory: MapMemory | None = None) -> None:
+        """View a map; with the memory of its earlier states what is derived costs less."""
         self.grid = grid
+        self._memory = memory or MapMemory()
 
     @cached_property
     def clearance_m(self) -> NDArray[np.float32]:
         """(rows, cols) float32, metres to the nearest obstacle **or unknown** cell."""
-        return clearance_field(self.grid)
+        return self._memory.clearances.of(self.grid)
+
+    @cached_property
+    def ground(self) -> Ground:
+        """The map in blocks of 10 cm, as decisions see it."""
+        return Ground(self.grid, self._memory.ground)
 
 
 class Pilot(Protocol):

@@ -16,6 +16,7 @@ from explore_bt.errors import (
 from explore_bt.exploration import warm_up
 from explore_bt.interfaces import (
     Event,
+    MapMemory,
     MapView,
     NodeState,
     RobotContext,
@@ -64,6 +65,7 @@ class Robot:
         self._scan: Scan2D | None = None
         self._measured: list[Measurement] = []
         self._view: MapView | None = None
+        self._map_memory = MapMemory()
         self._planned_on: OccupancyGrid | None = None
         self._tight = TightPlaces()
         self._slam_fault = ""
@@ -146,7 +148,7 @@ class Robot:
         """The newest map, with the places that proved too tight closed."""
         grid = self._tight.mark(self.slam.grid())
         if self._view is None or self._view.grid is not grid:
-            self._view = MapView(grid)
+            self._view = MapView(grid, self._map_memory)
         return self._view
 
     def scan(self) -> Scan2D | None:

@@ -3,7 +3,9 @@ import math
 import numpy as np
 
 from explore_bt.exploration import (
+    Ground,
     Outlooks,
+    Reach,
     TourTaste,
     ViewPlaces,
     blocks,
@@ -36,6 +38,7 @@ KERNELS = (
     outlook._within,
     passage._flood,
     tour._improve,
+    travel._flood,
     travel._spread,
 )
 
@@ -54,9 +57,9 @@ def test_after_warm_up_nothing_is_left_to_compile():
         clearance = clearance_field(grid)
         clearance.flags.writeable = False
         at = np.array([(3, 3), (9, 9)], dtype=np.int32)
-        travel_m = travel_field(clearance, at, 0.01, 0.05, clearance_weight=0.5)
+        travel_field(clearance, at, 0.01, 0.05, clearance_weight=0.5)
         visible_unknown_area(grid, (1, 1), 1.0, math.pi, 0)
         find_frontiers(grid)
-        places = ViewPlaces(grid, clearance, travel_m, radius_m=0.01)
-        choose_views(places, outlooks, (0.2, 0.2), 1.0, TourTaste())
+        places = ViewPlaces(Reach(Ground(grid), clearance, (0.2, 0.2), 0.01))
+        choose_views(places, outlooks, 1.0, TourTaste())
     assert [len(kernel.signatures) for kernel in KERNELS] == compiled

@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from explore_bt.errors import UserError
 from explore_bt.exploration import clearance_field, nearest_reaching_cell, travel_field
+from explore_bt.exploration.travel import Travel
 
 from .grids import drawn
 
@@ -48,6 +49,15 @@ def test_travel_is_what_scipys_dijkstra_finds(clearance, data, radius_m, weight)
     expected = by_scipy(clearance, start, np.float32(radius_m), weight)
     found = travel_field(clearance, start, radius_m, 0.05, clearance_weight=weight)
     np.testing.assert_allclose(found, 0.05 * expected, rtol=1e-5)
+
+
+@settings(deadline=None, max_examples=80)
+@given(fields, st.lists(st.tuples(st.integers(-2, 12), st.integers(-2, 12)), min_size=1, max_size=3))
+def test_reached_is_where_a_way_leads(clearance, starts):
+    travel = Travel(clearance, 0.2, 0.1)
+    np.testing.assert_array_equal(
+        travel.reached(np.array(starts)), np.isfinite(travel.field(np.array(starts)))
+    )
 
 
 @settings(deadline=None, max_examples=40)

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from explore_bt.exploration import Outlooks, ViewPlaces, clearance_field, travel_field
+from explore_bt.exploration import Ground, Outlooks, Reach, ViewPlaces, clearance_field
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
 RADIUS_M = 0.2
@@ -19,16 +19,15 @@ def hall() -> OccupancyGrid:
 
 
 def places(grid: OccupancyGrid, dense_m: float, more: np.ndarray | None = None) -> ViewPlaces:
-    clearance_m = clearance_field(grid)
-    travel_m = travel_field(clearance_m, grid.cell_of(*HERE_XY), RADIUS_M, grid.resolution_m)
-    return ViewPlaces(grid, clearance_m, travel_m, radius_m=RADIUS_M, dense_m=dense_m, more=more)
+    reach = Reach(Ground(grid), clearance_field(grid), HERE_XY, RADIUS_M)
+    return ViewPlaces(reach, dense_m=dense_m, more=more)
 
 
 def test_the_robot_can_stand_at_every_place_and_every_place_is_near_one() -> None:
     grid = hall()
     chosen = places(grid, 0.0)
     clearance_m = clearance_field(grid)
-    assert clearance_m[tuple(chosen.cells.T)].min() >= RADIUS_M
+    assert clearance_m[tuple(grid.cells_of(chosen.xy).T)].min() >= RADIUS_M
     floor = grid.centers_of(np.argwhere(clearance_m >= 0.6))
     apart = np.hypot(*(floor[:, None] - chosen.xy[None]).transpose(2, 0, 1))
     assert apart.min(axis=1).max() < 0.6 * np.sqrt(2.0) + 0.1

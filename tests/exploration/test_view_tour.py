@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from explore_bt.exploration import (
+    Ground,
     Outlooks,
+    Reach,
     TourTaste,
     View,
     ViewPlaces,
@@ -14,7 +16,6 @@ from explore_bt.exploration import (
     choose_views,
     clearance_field,
     order_views,
-    travel_field,
 )
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
@@ -36,10 +37,8 @@ def rooms(seed: int) -> OccupancyGrid:
 
 
 def chosen_in(grid: OccupancyGrid, taste: TourTaste) -> tuple[ViewPlaces, ViewSet]:
-    clearance_m = clearance_field(grid)
-    travel_m = travel_field(clearance_m, grid.cell_of(6.0, 4.5), RADIUS_M, grid.resolution_m)
-    places = ViewPlaces(grid, clearance_m, travel_m, radius_m=RADIUS_M)
-    return places, choose_views(places, Outlooks(), (6.0, 4.5), RANGE_M, taste)
+    places = ViewPlaces(Reach(Ground(grid), clearance_field(grid), (6.0, 4.5), RADIUS_M))
+    return places, choose_views(places, Outlooks(), RANGE_M, taste)
 
 
 @pytest.mark.parametrize("seed", range(6))
