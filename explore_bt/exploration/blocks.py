@@ -75,19 +75,14 @@ def _best(score, side, row0, col0, rows, cols):  # type: ignore[no-untyped-def] 
 
 @njit(cache=True)
 def _pool(cells, side, row0, col0, rows, cols):  # type: ignore[no-untyped-def]  # numba kernel
-    """A block is occupied if any cell is; else free if more than half of its cells are known."""
-    known = np.zeros((rows, cols), dtype=np.int32)
+    """A block is occupied if any cell is; else free if any is known."""
     pooled = np.full((rows, cols), UNKNOWN, dtype=np.int8)
     for row in range(cells.shape[0]):
         for col in range(cells.shape[1]):
             value = cells[row, col]
             r, c = (row + row0) // side, (col + col0) // side
-            if value == OCCUPIED:
-                pooled[r, c] = OCCUPIED
-            elif value == FREE:
-                known[r, c] += 1
-                if 2 * known[r, c] > side * side and pooled[r, c] == UNKNOWN:
-                    pooled[r, c] = FREE
+            if value == OCCUPIED or (value == FREE and pooled[r, c] == UNKNOWN):
+                pooled[r, c] = value
     return pooled
 
 

@@ -33,7 +33,7 @@ class Ground:
     Attributes:
         source: the map itself.
         blocks: which of its cells lie in which block.
-        grid: the blocks as a map: occupied if a cell is; else free if more than half of the cells are known.
+        grid: the blocks as a map: occupied if a cell is; else free if one is.
     """
 
     def __init__(self, source: OccupancyGrid, memory: GroundMemory | None = None) -> None:

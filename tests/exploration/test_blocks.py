@@ -31,7 +31,9 @@ def test_a_finer_map_of_the_same_looks_the_same_in_blocks(cells: np.ndarray) -> 
     assert np.array_equal(*maps)
 
 
-def test_a_block_with_any_obstacle_is_occupied_and_one_known_by_half_is_not_free() -> None:
-    cells = np.array([[FREE, FREE, FREE, UNKNOWN], [FREE, OCCUPIED, FREE, UNKNOWN]], dtype=np.int8)
+def test_a_block_with_any_obstacle_is_occupied_and_else_one_with_any_floor_is_free() -> None:
+    cells = np.full((2, 6), UNKNOWN, dtype=np.int8)
+    cells[0, :4] = FREE
+    cells[1, 1] = OCCUPIED
     grid = OccupancyGrid(cells, 0.05, (0.0, 0.0))
-    assert pooled_map(grid, Blocks.over(grid, 0.1)).tolist() == [[OCCUPIED, UNKNOWN]]
+    assert pooled_map(grid, Blocks.over(grid, 0.1)).tolist() == [[OCCUPIED, FREE, UNKNOWN]]
