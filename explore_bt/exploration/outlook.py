@@ -284,7 +284,7 @@ class Outlooks:
             self._known.clear()
             self._first = first
             return
-        tiles = np.argwhere(_changed_tiles(read_only(before), read_only(cells)))
+        tiles = np.ascontiguousarray(np.argwhere(_changed_tiles(read_only(before), read_only(cells))))
         if not len(tiles):
             return
         low, high = _TILE * tiles.min(axis=0) - rays.reach, _TILE * (tiles.max(axis=0) + 1) + rays.reach

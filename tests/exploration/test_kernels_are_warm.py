@@ -49,10 +49,11 @@ def test_after_warm_up_nothing_is_left_to_compile():
     assert all(count > 0 for count in compiled)
     rng = np.random.default_rng(0)
     wide = rng.choice([FREE, FREE, UNKNOWN], (60, 80)).astype(np.int8)
-    later = wide.copy()
-    later[:20] = FREE
+    later, last = wide.copy(), wide.copy()
+    later[:20] = last[:20] = FREE
+    later[32:40, 40:48], last[32:40, 40:48] = FREE, UNKNOWN  # one tile of blocks
     outlooks = Outlooks()
-    for cells in (wide.copy(), later, wide[::2, ::2], np.asfortranarray(wide)):
+    for cells in (wide.copy(), later, last, wide[::2, ::2], np.asfortranarray(wide)):
         grid = OccupancyGrid(cells, 0.05, (0.0, 0.0))
         clearance = clearance_field(grid)
         clearance.flags.writeable = False
