@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from explore_bt.errors import (
     ComponentFailure,
@@ -23,6 +24,7 @@ from explore_bt.interfaces import (
     RobotSnapshot,
 )
 from explore_bt.mission import Mission, RobotSpec, build_tree
+from explore_bt.runtime.centred import centred
 from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
@@ -183,9 +185,10 @@ class Robot:
         """
         straight_m = self.estimate().T_map_base.distance_to(goal)
         try:
-            return plan_or_squeeze(
+            path = plan_or_squeeze(
                 lambda radius_m: self._plan(goal, radius_m), self.footprint_radius_m, straight_m
             )
+            return centred(path, self._seen_points(), self.view().grid, self.footprint_radius_m)
         except (PlanningFailure, UserError):
             raise
         except Exception as error:
@@ -318,10 +321,14 @@ class Robot:
             _log.error("robot %s: %s failed", self.name, component, exc_info=error)
 
     def _show_gate(self) -> None:
-        assert self._scan is not None
-        estimate = self.slam.estimate()
-        points = estimate.T_map_base.apply(steadied(self._scan).points())
-        self.pilot.see(np.ascontiguousarray(points), self.slam.grid(), estimate)
+        self.pilot.see(self._seen_points(), self.slam.grid(), self.slam.estimate())
+
+    def _seen_points(self) -> NDArray[np.float64]:
+        """(N, 2) metres, ``map`` frame: the newest scan's returns, less noisy close by."""
+        if self._scan is None:
+            return np.empty((0, 2))
+        points = self.slam.estimate().T_map_base.apply(steadied(self._scan).points())
+        return np.ascontiguousarray(points)
 
     def _read(self) -> Sequence[Measurement]:
         try:
