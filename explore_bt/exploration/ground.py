@@ -28,7 +28,7 @@ class GroundMemory:
 
 
 class Ground:
-    """A map in blocks, on a lattice through the map frame's origin.
+    """A map in blocks, on a lattice through the map frame's origin, to the nearest cell.
 
     Attributes:
         source: the map itself.
@@ -40,10 +40,10 @@ class Ground:
         """See a map so; the memory that was given with its earlier states makes that cheaper."""
         self.source = source
         self.blocks = Blocks.over(source, BLOCK_M, _CHUNK)
-        side_m = self.blocks.side * source.resolution_m
-        origin = (self.blocks.first[1] * side_m, self.blocks.first[0] * side_m)
+        (row, col), (x, y), cell_m = self.blocks.shift, source.origin_xy, source.resolution_m
         self._memory = memory or GroundMemory()
-        self.grid = OccupancyGrid(self._memory.pooled_maps.of(source, self.blocks), side_m, origin)
+        pooled = self._memory.pooled_maps.of(source, self.blocks)
+        self.grid = OccupancyGrid(pooled, self.blocks.side * cell_m, (x - col * cell_m, y - row * cell_m))
         self._without_specks: dict[float, NDArray[np.int8]] = {}
 
     @cached_property

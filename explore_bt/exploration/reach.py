@@ -23,6 +23,7 @@ class Reach:
     Attributes:
         ground: the map in blocks.
         room_m: (rows, columns) float32: clearance of each block's middle, and at least r; 0 out of reach.
+        from_here_m: float32, metres from the robot to each of the larger blocks, see :meth:`ways_m`.
     """
 
     def __init__(
@@ -45,7 +46,6 @@ class Reach:
             clearance_weight: what a metre at the walls costs more than a roomy one.
         """
         self.ground = ground
-        self._radius_m = radius_m
         source = ground.source
         self._reached = Travel(clearance_m, radius_m, source.resolution_m).reached(source.cell_of(*here_xy))
         self._best = ground.blocks.best_cells(np.where(self._reached, clearance_m, np.float32(0.0)))
@@ -58,8 +58,8 @@ class Reach:
             self._go.side * ground.grid.resolution_m,
             clearance_weight=clearance_weight,
         )
-        self._here = self.way_block_of(ground.block_of(np.array([here_xy])))[0]
-        self.from_here_m = self.ways_m((int(self._here[0]), int(self._here[1])))
+        row, col = self.way_block_of(ground.block_of(np.array([here_xy])))[0].tolist()
+        self.from_here_m = self.ways_m((row, col))
 
     def way_block_of(self, blocks: NDArray[np.int64]) -> NDArray[np.int64]:
         """(N, 2) of the larger blocks, which ways are measured over, that hold (N, 2) of the ground's."""

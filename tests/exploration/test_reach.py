@@ -11,7 +11,9 @@ from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 HERE_XY = (3.0, 3.0)
 
 
-def boxes(seed: int, resolution_m: float = 0.05) -> OccupancyGrid:
+def boxes(
+    seed: int, resolution_m: float = 0.05, origin_xy: tuple[float, float] = (0.0, 0.0)
+) -> OccupancyGrid:
     """Random boxes and unknown patches on 6 × 6 m of floor, drawn in cells of 10 cm; the middle is free."""
     rng = np.random.default_rng(seed)
     cells = np.full((60, 60), FREE, dtype=np.int8)
@@ -20,7 +22,7 @@ def boxes(seed: int, resolution_m: float = 0.05) -> OccupancyGrid:
         cells[row : row + rng.integers(1, 10), col : col + rng.integers(1, 10)] = value
     cells[26:35, 26:35] = FREE
     parts = round(0.1 / resolution_m)
-    return OccupancyGrid(np.kron(cells, np.ones((parts, parts), dtype=np.int8)), resolution_m, (0.0, 0.0))
+    return OccupancyGrid(np.kron(cells, np.ones((parts, parts), dtype=np.int8)), resolution_m, origin_xy)
 
 
 def reach_in(grid: OccupancyGrid, radius_m: float) -> Reach:
@@ -28,11 +30,16 @@ def reach_in(grid: OccupancyGrid, radius_m: float) -> Reach:
 
 
 @settings(deadline=None, max_examples=25)  # compiles
-@given(st.integers(0, 999), st.sampled_from([0.1, 0.05, 0.025]), st.sampled_from([0.15, 0.2, 0.25]))
+@given(
+    st.integers(0, 999),
+    st.sampled_from([0.1, 0.05, 0.025]),
+    st.sampled_from([0.15, 0.2, 0.25]),
+    st.tuples(*[st.floats(-0.2, 0.2)] * 2),
+)
 def test_there_is_room_to_stand_at_every_point_and_a_way_to_it(
-    seed: int, resolution_m: float, radius_m: float
+    seed: int, resolution_m: float, radius_m: float, origin_xy: tuple[float, float]
 ) -> None:
-    grid = boxes(seed, resolution_m)
+    grid = boxes(seed, resolution_m, origin_xy)
     reach = reach_in(grid, radius_m)
     blocks = np.argwhere(reach.room_m > 0.0)
     points = reach.points(blocks)
