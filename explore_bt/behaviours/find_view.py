@@ -48,6 +48,7 @@ class FindView(Search):
     none is left, is answered by a short tour through the few places that together show what is still to be
     seen; ``rank: gain`` takes the place of greatest gain · exp(−λ travel) instead (González-Baños & Latombe,
     2002). The present goal is kept unless another tour is clearly better.
+    What other robots are about to see is left to them while there is anything else.
     SUCCESS with the place in ``goal``; FAILURE once nothing of use is left in reach, with what stays open and
     why in ``left_open``.
     """
@@ -85,6 +86,9 @@ class FindView(Search):
         doc="share of the known floor that may be left unseen in scraps of less than 0.5 m²",
     )
     decay: Input[float] = Input(float, default=0.2, ge=0.0, doc="λ of rank gain, per metre")
+    claimed: Input[tuple[tuple[float, float], ...]] = Input(
+        tuple, default=Key("claimed"), initial=(), doc="places that other robots go to look from"
+    )
     history: Input[HalfPlaneHistory] = Input(
         HalfPlaneHistory,
         default=Key("half_planes"),
@@ -144,13 +148,13 @@ class FindView(Search):
 
     def _choose(self, places: ViewPlaces) -> ViewSet:
         tried = np.array([place.position for place in self.tried()]).reshape(-1, 2)
-        return choose_views(
-            places.without(tried),
-            self._outlooks,
-            self.robot.lidar_range_m,
-            self._taste,
-            self._present_goal,
-        )
+        places = places.without(tried)
+        about = (places, self._outlooks, self.robot.lidar_range_m, self._taste, self._present_goal)
+        if self.claimed:
+            unclaimed = choose_views(*about, np.array(self.claimed))
+            if unclaimed.views:
+                return unclaimed
+        return choose_views(*about)
 
     @property
     def _present_goal(self) -> tuple[float, float] | None:

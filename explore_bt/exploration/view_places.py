@@ -83,14 +83,41 @@ class ViewPlaces:
             depth_m: how far into the unknown an opening is believed.
             min_patch_m2: smaller patches of unknown are noise between beams, and looked over.
         """
+        near_m = np.where(self._is_dense, _NEAR_M, range_m)
+        outlook = self._look_from(self.blocks, near_m, outlooks, range_m, depth_m, min_patch_m2)
+        blocks = self.reach.ground.grid
+        return outlook, blocks.resolution_m**2, blocks.cells.size
+
+    def look_from(
+        self,
+        spots: NDArray[np.float64],
+        outlooks: Outlooks,
+        range_m: float,
+        depth_m: float,
+        min_patch_m2: float,
+    ) -> Outlook:
+        """What each of (N, 2) other spots, metres, ``map`` frame, shows; else as ``look``."""
+        blocks = self.reach.ground.block_of(spots)
+        blocks = blocks[((blocks >= 0) & (blocks < self.reach.room_m.shape)).all(axis=1)]
+        near_m = np.full(len(blocks), range_m)
+        return self._look_from(blocks, near_m, outlooks, range_m, depth_m, min_patch_m2)
+
+    def _look_from(
+        self,
+        blocks: NDArray[np.int64],
+        near_m: NDArray[np.float64],
+        outlooks: Outlooks,
+        range_m: float,
+        depth_m: float,
+        min_patch_m2: float,
+    ) -> Outlook:
         ground = self.reach.ground
         side_m = ground.grid.resolution_m
-        outlook = outlooks.look(
+        return outlooks.look(
             ground.without_specks(min_patch_m2),
-            self.blocks,
+            blocks,
             range_m / side_m,
             depth_m / side_m,
             first=ground.blocks.first,
-            near_cells=np.where(self._is_dense, _NEAR_M, range_m) / side_m,
+            near_cells=near_m / side_m,
         )
-        return outlook, side_m**2, ground.grid.cells.size

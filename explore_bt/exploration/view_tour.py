@@ -95,6 +95,7 @@ def choose_views(
     range_m: float,
     taste: TourTaste,
     keep_xy: tuple[float, float] | None = None,
+    claimed_xy: NDArray[np.float64] | None = None,
 ) -> ViewSet:
     """Few views that together show what the places can show, near ones first.
 
@@ -106,11 +107,13 @@ def choose_views(
         range_m: the lidar's range.
         taste: see there.
         keep_xy: the present goal; it counts half as much again.
+        claimed_xy: (K, 2) metres, places that others go to: what they show is as good as seen.
     """
     nothing = ViewSet((), np.zeros((1, 1)), 0.0)
     if not len(places.blocks):
         return nothing
-    outlook, cell_m2, size = places.look(outlooks, range_m, taste.depth_m, 0.5 * taste.min_gain_m2)
+    min_patch_m2 = 0.5 * taste.min_gain_m2
+    outlook, cell_m2, size = places.look(outlooks, range_m, taste.depth_m, min_patch_m2)
     active = np.diff(outlook.begin) * cell_m2 >= taste.min_gain_m2
     near = places.travel_m
     active &= np.isfinite(near)
@@ -123,6 +126,8 @@ def choose_views(
     views: list[View] = []
     fields = [places.reach.from_here_m]
     covered = np.zeros(size, dtype=np.bool_)
+    if claimed_xy is not None and len(claimed_xy):
+        covered[places.look_from(claimed_xy, outlooks, range_m, taste.depth_m, min_patch_m2).cells] = True
     while len(views) < taste.most:
         gain_m2 = _count_new(outlook.begin, outlook.cells, covered, active) * cell_m2
         active &= gain_m2 >= taste.min_gain_m2

@@ -64,14 +64,16 @@ class Explorer:
         Args:
             grid: the newest map, of any resolution; it may have grown since. Its cells are frozen from then
                 on: give a copy of an array that is still being written.
-            pose: where the robot is, ``map`` frame; or a pose for each of several robots by name.
+            pose: where the robot is, ``map`` frame; or a pose for each of several robots by name. They share
+                the map, and ``complete`` and ``information_gain`` leave to each what it is about to see.
 
         Returns:
             The decision, or one for each robot.
         """
         if isinstance(pose, Pose2):
             return self._robot(_ALONE).decide(grid, pose)
-        return {name: self._robot(name).decide(grid, each) for name, each in pose.items()}
+        robots = {name: self._robot(name) for name in pose}
+        return {name: robots[name].decide(grid, pose[name], _goals_but(name, robots)) for name in pose}
 
     def _robot(self, name: str) -> ExplorerRobot:
         if name not in self._robots:
@@ -79,3 +81,8 @@ class Explorer:
             body = GridRobot(name, planner, self._radius_m, self._range_m)
             self._robots[name] = ExplorerRobot(body, self._tree)
         return self._robots[name]
+
+
+def _goals_but(name: str, robots: Mapping[str, ExplorerRobot]) -> tuple[tuple[float, float], ...]:
+    goals = (robot.goal_xy for other, robot in robots.items() if other != name)
+    return tuple(goal for goal in goals if goal is not None)

@@ -22,11 +22,20 @@ class ExplorerRobot:
         self._tree = build_tree(tree, body, self._blackboard)
         self._over: Decision | None = None
 
-    def decide(self, grid: OccupancyGrid, pose: Pose2) -> Decision:
-        """Tell the tree where the robot is, and let it go on; once over, it stays over."""
+    @property
+    def goal_xy(self) -> tuple[float, float] | None:
+        """Where the robot is sent; None before the first decision and once it is over."""
+        goal = None if self._over else self._blackboard.get("goal")
+        return goal.position if isinstance(goal, Waypoint) else None
+
+    def decide(
+        self, grid: OccupancyGrid, pose: Pose2, claimed: tuple[tuple[float, float], ...] = ()
+    ) -> Decision:
+        """Tell the tree where the robot is, and where others go; once over, it stays over."""
         if self._over is not None:
             return self._over
         self._body.report(grid, pose)
+        self._blackboard.write("claimed", claimed)
         for _ in range(_MOST_TICKS):
             self._tree.root.tick_once()
             if self._tree.root.status is not Status.RUNNING:

@@ -10,7 +10,7 @@ from explore_bt.errors import UserError
 from explore_bt.exploration import clearance_at
 from explore_bt.headless import STRATEGIES
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
-from tests.headless.drive import explore, look, share_seen
+from tests.headless.drive import advanced, explore, look, share_seen
 
 START = Pose2(1.5, 1.5, 0.0)
 
@@ -61,6 +61,36 @@ def test_several_robots_have_a_decision_each() -> None:
     decisions = explorer.decide(truth, {"one": START, "two": Pose2(6.0, 4.5, 0.0)})
     assert set(decisions) == {"one", "two"}
     assert all(decision.done for decision in decisions.values())
+
+
+def team_path_m(names: list[str]) -> tuple[float, float, list[float]]:
+    """All start in one place; the longest way, the share seen, how far apart two goals were."""
+    truth, explorer = flat(), Explorer(robot_radius_m=0.2)
+    known = np.full(truth.shape, UNKNOWN, dtype=np.int8)
+    poses, driven_m, apart_m = dict.fromkeys(names, START), dict.fromkeys(names, 0.0), []
+    for revision in range(400):
+        for pose in poses.values():
+            look(truth, known, pose)
+        grid = OccupancyGrid(known.copy(), truth.resolution_m, truth.origin_xy, revision)
+        decisions = explorer.decide(grid, poses)
+        going = {name: each for name, each in decisions.items() if each.path is not None}
+        goals = [each.goal for each in going.values() if each.goal is not None]
+        apart_m += [a.distance_to(b) for a, b in itertools.combinations(goals, 2)]
+        if not going:
+            return max(driven_m.values()), share_seen(truth, grid), apart_m
+        for name, decision in going.items():
+            there = advanced(decision, poses[name])
+            driven_m[name] += there.distance_to(poses[name])
+            poses[name] = there
+    raise AssertionError("they do not end")
+
+
+def test_two_robots_divide_the_work() -> None:
+    alone_m, share_alone, _ = team_path_m(["one"])
+    both_m, share_both, apart_m = team_path_m(["one", "two"])
+    assert min(share_alone, share_both) > 0.99
+    assert both_m < 0.75 * alone_m
+    assert np.median(apart_m) > 2.0
 
 
 def two_rooms(gap_cells: int) -> OccupancyGrid:
