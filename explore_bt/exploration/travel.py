@@ -113,7 +113,7 @@ class Travel:
     def field(
         self, start_cells: NDArray[np.integer] | tuple[int, int], most_m: float = math.inf
     ) -> NDArray[np.float32]:
-        """(rows, cols) float32, metres; see :func:`travel_field`."""
+        """(rows, cols) float32, metres; see :func:`travel_field`; beyond ``most_m`` too high, or inf."""
         starts, seeds, climbed = self._ways_out(start_cells)
         distance = np.full(self._passable.shape, np.inf)
         distance[seeds[:, 0] + 1, seeds[:, 1] + 1] = climbed
@@ -169,7 +169,6 @@ def travel_field(
     clearance_weight: float = 0.0,
     comfort_m: float = 0.6,
     escape_m: float = 0.6,
-    most_m: float = math.inf,
 ) -> NDArray[np.float32]:
     """Length of the shortest way from the robot to every cell where its footprint fits.
 
@@ -186,7 +185,6 @@ def travel_field(
             ``comfort_m``, and the field is a cost in metres of roomy floor.
         comfort_m: clearance from which on a metre costs a metre.
         escape_m: how far the robot may drive to leave a tight start.
-        most_m: where the way is longer, the field may be too high, or inf.
 
     Returns:
         (rows, cols) float32, metres; 0 at the start, inf where the robot cannot stand or come.
@@ -202,7 +200,7 @@ def travel_field(
         comfort_m=comfort_m,
         escape_m=escape_m,
     )
-    return travel.field(start_cells, most_m)
+    return travel.field(start_cells)
 
 
 def nearest_reaching_cell(
