@@ -28,6 +28,7 @@ __all__ = [
     "FREQUENCY",
     "JERK",
     "LENGTH",
+    "SHARE",
     "SPEED",
     "Acceleration",
     "Angle",
@@ -43,6 +44,7 @@ __all__ = [
     "Jerk",
     "Length",
     "PoseTriple",
+    "Share",
     "Speed",
     "parse_quantity",
 ]
@@ -107,6 +109,7 @@ ANGULAR_JERK = Dimension(
     ),
     "8 rad/s3",
 )
+SHARE = Dimension("share", "parts of 1", (("%", 0.01),), "20 % or 0.2")
 FREQUENCY = Dimension("frequency", "Hz", (("Hz", 1.0), ("kHz", 1000.0)), "10 Hz")
 
 
@@ -168,6 +171,7 @@ AngularRate = Annotated[float, *_quantity(ANGULAR_RATE)]
 AngularAcceleration = Annotated[float, *_quantity(ANGULAR_ACCELERATION)]
 AngularJerk = Annotated[float, *_quantity(ANGULAR_JERK)]
 Frequency = Annotated[float, *_quantity(FREQUENCY)]
+Share = Annotated[float, *_quantity(SHARE)]
 
 
 def _parse_pose(value: object) -> tuple[float, float, float]:

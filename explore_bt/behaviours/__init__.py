@@ -1,6 +1,7 @@
 """The leaves that put the exploration's mathematics into a tree, one a file."""
 
 from explore_bt.behaviours.back_out import BackOut
+from explore_bt.behaviours.budget_left import BudgetLeft
 from explore_bt.behaviours.choose_home import ChooseHome
 from explore_bt.behaviours.drive_to import DriveTo
 from explore_bt.behaviours.find_frontier import FindFrontier
@@ -19,6 +20,7 @@ from explore_bt.behaviours.watch_progress import WatchProgress
 __all__ = [
     "LEAVES",
     "BackOut",
+    "BudgetLeft",
     "ChooseHome",
     "DriveTo",
     "FindFrontier",
@@ -38,6 +40,7 @@ __all__ = [
 
 LEAVES = (
     BackOut,
+    BudgetLeft,
     ChooseHome,
     DriveTo,
     FindFrontier,

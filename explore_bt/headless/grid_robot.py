@@ -10,7 +10,7 @@ from explore_bt.exploration import scan_of_grid
 from explore_bt.headless.grid_pilot import GridPilot
 from explore_bt.interfaces import MapView, Planner
 from explore_bt.runtime.tight_places import TightPlaces
-from explore_bt.types import Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
+from explore_bt.types import Budget, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
 __all__ = ["GridRobot"]
 
@@ -63,6 +63,10 @@ class GridRobot:
     def now_s(self) -> float:
         """The number of reports so far."""
         return float(self._reports)
+
+    def budgets(self) -> tuple[Budget, ...]:
+        """None: the caller keeps them."""
+        return ()
 
     def estimate(self) -> Estimate:
         """The pose that was reported, healthy."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from explore_bt.exploration.clearance import clearance_field
 from explore_bt.interfaces.controller import ControlOutput
-from explore_bt.types import Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
+from explore_bt.types import Budget, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
 __all__ = ["MapView", "Pilot", "RobotServices"]
 
@@ -90,6 +90,9 @@ class RobotServices(Protocol):
 
     def now_s(self) -> float:
         """Mission time, seconds."""
+
+    def budgets(self) -> tuple[Budget, ...]:
+        """What of time, distance and battery the mission allows still; none where it sets no limit."""
 
     def estimate(self) -> Estimate:
         """The newest pose."""

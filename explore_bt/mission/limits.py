@@ -21,6 +21,7 @@ from explore_bt.units import (
     Frequency,
     Jerk,
     Length,
+    Share,
     Speed,
 )
 
@@ -39,6 +40,7 @@ class LimitsSpec:
     turn_jerk_rps3: float | None = None
     time_s: float | None = None
     distance_m: float | None = None
+    battery_reserve: float | None = None
 
     def apply(self, limits: MotionLimits) -> MotionLimits:
         """The body's limits, capped by the mission's."""
@@ -67,6 +69,7 @@ class LimitsModel(PluginOptions):
     turn_jerk: AngularJerk | None = Field(None, gt=0, description="change of turn acceleration")
     time: Duration | None = Field(None, gt=0, description="mission time after which the mission ends")
     distance: Length | None = Field(None, gt=0, description="distance driven after which the mission ends")
+    battery: Share | None = Field(None, ge=0, lt=1, description="charge that shall be left at home")
 
 
 class TickModel(PluginOptions):
@@ -90,6 +93,7 @@ def read_limits(entries: Entries, folder: Path, faults: Faults) -> LimitsSpec:
         model.turn_jerk,
         model.time,
         model.distance,
+        model.battery,
     )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from explore_bt.errors import ComponentFailure, ExploreError, LogCutOff, LogError
 from explore_bt.interfaces import Playback, Slam
 from explore_bt.runtime.stop_flag import StopFlag
-from explore_bt.types import Health, Measurement, PointCloud, Scan2D, Trajectory, WheelOdometry
+from explore_bt.types import Battery, Health, Measurement, PointCloud, Scan2D, Trajectory, WheelOdometry
 
 __all__ = ["HealthChange", "Mapping", "map_log"]
 
@@ -99,7 +99,9 @@ def map_log(
                 mapping.scans += 1
                 _note_health(mapping, slam)
                 on_scan(mapping)
-            elif odometry or not isinstance(measurement, WheelOdometry):
+            elif not isinstance(measurement, Battery) and (
+                odometry or not isinstance(measurement, WheelOdometry)
+            ):
                 _update(slam, measurement)
     except (LogCutOff, ComponentFailure) as end:
         if not mapping.scans:

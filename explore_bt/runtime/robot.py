@@ -24,6 +24,7 @@ from explore_bt.interfaces import (
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.pilot import Pilot
+from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
@@ -31,13 +32,26 @@ from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.tree import Blackboard, PortUnsetError, Status, halt
-from explore_bt.types import Estimate, Health, Measurement, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
+from explore_bt.types import (
+    Battery,
+    Budget,
+    Estimate,
+    Health,
+    Measurement,
+    OccupancyGrid,
+    Path,
+    Pose2,
+    Scan2D,
+    Trajectory,
+)
 
 __all__ = ["Robot"]
 
 DEFAULT_LIDAR_RANGE_M = 5.0
 REASON_KEY = "reason"
 """Blackboard entry in which a tree may say why it ended."""
+OVER_BUDGET_KEY = "over_budget"
+"""Blackboard entry in which a tree says that it broke off for want of time, distance or battery."""
 
 _log = logging.getLogger("explore_bt")
 
@@ -66,6 +80,7 @@ class Robot:
         self._view: MapView | None = None
         self._planned_on: OccupancyGrid | None = None
         self._tight = TightPlaces()
+        self._purse = Purse(mission.limits)
         self._slam_fault = ""
         self._logged: set[tuple[str, str]] = set()
         self._health_news = HealthNews()
@@ -129,6 +144,10 @@ class Robot:
     def now_s(self) -> float:
         """Mission time, seconds."""
         return self.driver.clock.now_s()
+
+    def budgets(self) -> tuple[Budget, ...]:
+        """What the mission's limits leave to spend."""
+        return self._purse.budgets(self.now_s(), self.distance_m)
 
     def estimate(self) -> Estimate:
         """The newest pose, ``lost`` if the SLAM plugin itself broke down."""
@@ -276,6 +295,9 @@ class Robot:
     def _take(self, measurement: Measurement) -> None:
         if isinstance(measurement, Scan2D):
             self._scan = measurement
+        elif isinstance(measurement, Battery):
+            self._purse.take(measurement)
+            return
         if self._slam_fault:
             return
         self._measured.append(measurement)

@@ -10,7 +10,7 @@ from py_trees.behaviour import Behaviour
 from explore_bt.interfaces import Event, TickSnapshot
 from explore_bt.mission import Mission
 from explore_bt.runtime.observers import Observers
-from explore_bt.runtime.robot import REASON_KEY, Robot
+from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.tree import Status
 from explore_bt.types import Outcome, Scan2D
@@ -106,7 +106,15 @@ class Runner:
             if self._ended[robot.name] is not Status.SUCCESS:
                 self._end(Outcome.FAILED, _last_words(robot, Status.FAILURE))
                 return
-        self._end(Outcome.EXPLORED, _last_words(self._robots[0], Status.SUCCESS))
+        short = [
+            str(robot.blackboard.get(OVER_BUDGET_KEY))
+            for robot in self._robots
+            if OVER_BUDGET_KEY in robot.blackboard
+        ]
+        if short:
+            self._end(Outcome.BUDGET, "; ".join(short))
+        else:
+            self._end(Outcome.EXPLORED, _last_words(self._robots[0], Status.SUCCESS))
 
     def _tick_tree(self, robot: Robot) -> None:
         status = robot.decide()

@@ -6,7 +6,7 @@ import numpy as np
 
 from explore_bt.errors import PlanningFailure
 from explore_bt.interfaces import ControlOutput, ControlStatus, MapView
-from explore_bt.types import FREE, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory, Twist2
+from explore_bt.types import FREE, Budget, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory, Twist2
 
 __all__ = ["FakePilot", "FakeRobot", "full_circle_scan", "open_floor"]
 
@@ -55,10 +55,15 @@ class FakeRobot:
         self.refusal: PlanningFailure | None = None
         self.driven: list[Pose2] = []
         self.avoided: list[tuple[float, float]] = []
+        self.limited: tuple[Budget, ...] = ()
 
     def now_s(self) -> float:
         """``time_s``."""
         return self.time_s
+
+    def budgets(self) -> tuple[Budget, ...]:
+        """``limited``."""
+        return self.limited
 
     def estimate(self) -> Estimate:
         """``pose``, healthy."""

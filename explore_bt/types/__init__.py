@@ -3,9 +3,18 @@
 Frames are REP-105's ``map → odom → base_link``, units REP-103's: metres, radians, seconds.
 """
 
+from explore_bt.types.budget import Budget
 from explore_bt.types.estimate import Estimate, Health, Trajectory
 from explore_bt.types.grid import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
-from explore_bt.types.measurement import Imu, Measurement, PointCloud, RgbdFrame, Scan2D, WheelOdometry
+from explore_bt.types.measurement import (
+    Battery,
+    Imu,
+    Measurement,
+    PointCloud,
+    RgbdFrame,
+    Scan2D,
+    WheelOdometry,
+)
 from explore_bt.types.motion import MotionLimits, MotionState
 from explore_bt.types.path import Path, Waypoint, way_along
 from explore_bt.types.pose import Pose2, Twist2, wrap_angle
@@ -16,6 +25,8 @@ __all__ = [
     "FREE",
     "OCCUPIED",
     "UNKNOWN",
+    "Battery",
+    "Budget",
     "Estimate",
     "GridWindow",
     "Health",

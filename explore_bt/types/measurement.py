@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from explore_bt.types.pose import Pose2
 
-__all__ = ["Imu", "Measurement", "PointCloud", "RgbdFrame", "Scan2D", "WheelOdometry"]
+__all__ = ["Battery", "Imu", "Measurement", "PointCloud", "RgbdFrame", "Scan2D", "WheelOdometry"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,6 +94,15 @@ class WheelOdometry:
     frame: str = "odom"
 
 
+@dataclass(frozen=True, slots=True)
+class Battery:
+    """State of charge: 1 is full, 0 empty."""
+
+    stamp_s: float
+    charge: float
+    frame: str = "base_link"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class RgbdFrame:
     """One image of an RGB-D camera, depth registered to colour: pixel by pixel the same ray.
@@ -146,7 +155,7 @@ class RgbdFrame:
         return ((self.image.astype(np.uint32) @ weights + 128) >> 8).astype(np.uint8)
 
 
-Measurement: TypeAlias = Scan2D | PointCloud | Imu | WheelOdometry | RgbdFrame
+Measurement: TypeAlias = Scan2D | PointCloud | Imu | WheelOdometry | RgbdFrame | Battery
 
 
 def _fault(

@@ -15,7 +15,17 @@ from explore_bt.errors import WorldError
 from explore_bt.interfaces import RobotContext
 from explore_bt.maps import write_map
 from explore_bt.testing.driver_contract import DriverContract
-from explore_bt.types import FREE, Imu, Measurement, OccupancyGrid, Pose2, Scan2D, Twist2, WheelOdometry
+from explore_bt.types import (
+    FREE,
+    Battery,
+    Imu,
+    Measurement,
+    OccupancyGrid,
+    Pose2,
+    Scan2D,
+    Twist2,
+    WheelOdometry,
+)
 
 WORLDS = Path(__file__).parents[2] / "missions" / "worlds"
 ROOM = WORLDS / "room.yaml"
@@ -270,3 +280,10 @@ def test_a_world_that_is_not_there_is_refused_at_setup(options: dict[str, object
 def test_options_of_the_wrong_type_or_unit_are_refused(options: dict[str, object], message: str) -> None:
     with pytest.raises(ValidationError, match=message):
         Sim2dOptions.model_validate(options)
+
+
+def test_the_battery_drains_evenly_and_only_where_one_is_asked_for() -> None:
+    told = [m for m in drive(ready(battery_life="4 s"), Twist2(), 5.0) if isinstance(m, Battery)]
+    assert [m.stamp_s for m in told] == [1.0, 2.0, 3.0, 4.0, 5.0]
+    assert [m.charge for m in told] == pytest.approx([0.75, 0.5, 0.25, 0.0, 0.0])
+    assert not [m for m in drive(ready(), Twist2(), 2.0) if isinstance(m, Battery)]

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 from itertools import pairwise
 from pathlib import Path
@@ -163,10 +164,31 @@ def test_a_spent_time_budget_ends_the_mission_at_rest(run: RunMission) -> None:
 
 
 def test_a_spent_distance_budget_ends_the_mission(run: RunMission) -> None:
-    result = run("00_room.yaml", "slam=ground_truth", "limits.distance=1.5 m")
+    result = run("00_room.yaml", "slam=ground_truth", "strategy=paper", "limits.distance=1.5 m")
     assert result.outcome is Outcome.BUDGET
     assert "distance budget" in result.reason
     assert 1.5 <= result.path_length_m < 2.5
+
+
+@pytest.mark.parametrize("limit", ["time: 70 s", "distance: 25 m", "battery: 20 %"])
+def test_a_robot_turns_home_while_what_is_left_lasts(run: RunMission, tmp_path: Path, limit: str) -> None:
+    missions = shutil.copytree(MISSIONS, tmp_path / "missions")
+    mission = missions / "01_apartment.yaml"
+    text = mission.read_text()
+    assert "radius: 0.25 m," in text
+    assert "time: 30 min" in text
+    text = text.replace("radius: 0.25 m,", "radius: 0.25 m, battery_life: 90 s,")
+    mission.write_text(re.sub(r"time: 30 min.*", limit, text))
+    result = run(str(mission), "slam=ground_truth")
+    assert result.outcome is Outcome.BUDGET
+    assert f"left of the {limit.split(':')[0]} budget" in result.reason
+    assert result.distance_to_home_m < 0.2
+    assert result.coverage is not None
+    assert result.coverage > 0.3
+    assert result.mission_time_s <= 90.0
+    assert result.path_length_m <= 25.0
+    if limit.startswith(("time", "battery")):
+        assert result.mission_time_s <= 72.0
 
 
 def test_a_mission_goes_on_in_yesterdays_map(run: RunMission, tmp_path: Path) -> None:

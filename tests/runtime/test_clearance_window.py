@@ -26,7 +26,9 @@ def distance_to_cells(cells: np.ndarray, at: tuple[float, float]) -> float:
     st.lists(st.tuples(st.integers(20, 39), st.integers(20, 39)), max_size=8),
     st.lists(st.tuples(st.integers(20, 39), st.integers(20, 39)), max_size=8),
     st.lists(st.integers(0, 7), max_size=4),
-    st.tuples(st.floats(1.1, 1.9), st.floats(1.1, 1.9)),
+    st.tuples(*[st.integers(22, 37)] * 2, *[st.floats(0.01, 0.99)] * 2).map(
+        lambda drawn: ((drawn[0] + drawn[2]) * RESOLUTION, (drawn[1] + drawn[3]) * RESOLUTION)
+    ),  # not on a line between cells, which belongs to either
 )
 @settings(deadline=None)
 def test_unknown_counts_and_obstacles_count_unless_the_scan_shows_them(

@@ -11,6 +11,7 @@ from explore_bt.units import (
     AngularAcceleration,
     AngularJerk,
     AngularRate,
+    Duration,
     FilePath,
     Frequency,
     Jerk,
@@ -49,6 +50,10 @@ class Sim2dOptions(PluginOptions):
     turn_rate: AngularRate = Field(1.2, ge=0.01, le=20.0, description="largest turn rate")
     turn_acceleration: AngularAcceleration = Field(2.0, ge=0.01, le=100.0, description="its largest change")
     turn_jerk: AngularJerk = Field(8.0, ge=0.01, le=2000.0, description="the largest change of that")
+
+    battery_life: Duration | None = Field(
+        None, gt=0, description="a full battery lasts so long; none by default"
+    )
 
     noise: bool = Field(True, description="false: every sensor is exact, no beam drops out, no wheel slips")
 

@@ -7,6 +7,7 @@ import math
 from explore_bt.clock import ManualClock
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Measurement, Pose2
+from explore_bt_drivers.sim2d.battery import BatteryGauge
 from explore_bt_drivers.sim2d.body import Body
 from explore_bt_drivers.sim2d.imu import InertialUnit
 from explore_bt_drivers.sim2d.lidar import Lidar
@@ -34,6 +35,7 @@ class Simulation(ManualClock):
             InertialUnit(options, context.rng("imu")),
             Wheels(options, start, context.rng("wheels")),
             Lidar(world, options, context.rng("lidar"), context.rng("lidar dropout")),
+            *(() if options.battery_life is None else (BatteryGauge(options.battery_life),)),
         )
         self._queue: list[Measurement] = []
 
