@@ -8,6 +8,7 @@ from explore_bt.behaviours.find_frontier import FindFrontier
 from explore_bt.behaviours.find_next_heading import FindNextHeading
 from explore_bt.behaviours.find_view import FindView
 from explore_bt.behaviours.give_up_goal import GivenUp, GiveUpGoal
+from explore_bt.behaviours.leave_pocket import LeavePocket
 from explore_bt.behaviours.record_waypoint import RecordWaypoint
 from explore_bt.behaviours.reset_half_planes import ResetHalfPlanes
 from explore_bt.behaviours.stop_requested import StopRequested
@@ -28,6 +29,7 @@ __all__ = [
     "FindView",
     "GiveUpGoal",
     "GivenUp",
+    "LeavePocket",
     "RecordWaypoint",
     "ResetHalfPlanes",
     "StopRequested",
@@ -47,6 +49,7 @@ LEAVES = (
     FindNextHeading,
     FindView,
     GiveUpGoal,
+    LeavePocket,
     RecordWaypoint,
     ResetHalfPlanes,
     StopRequested,

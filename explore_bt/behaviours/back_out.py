@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from explore_bt.behaviours.retrace import Retrace, path_along
 from explore_bt.exploration import clearance_at, way_back
-from explore_bt.interfaces import ControlStatus
-from explore_bt.tree import Input, Leaf, Status
-from explore_bt.types import Path, way_along
-from explore_bt.units import Duration, Length
+from explore_bt.tree import Input, Status
+from explore_bt.types import way_along
+from explore_bt.units import Length
 
 __all__ = ["BackOut"]
 
@@ -18,7 +17,7 @@ _CLEAR_OF_M = 0.5
 """Beyond the footprint, what the scan meets is near; and so far back from what is."""
 
 
-class BackOut(Leaf):
+class BackOut(Retrace):
     """Drives back along its own track to the first place with room around it.
 
     Where the footprint went in it fits out again, whatever the map's cells make of the passage. What the
@@ -35,9 +34,6 @@ class BackOut(Leaf):
         Length, default=0.5, ge=0.0, doc="so far back in any case; 0: not at all where there is room"
     )
     at_most: Input[float] = Input(Length, default=5.0, ge=0.1, doc="no farther back than this")
-    patience: Input[float] = Input(
-        Duration, default=4.0, ge=0.0, doc="how long the safety gate may hold the robot"
-    )
 
     def initialise(self) -> None:
         """Hand the controller the track."""
@@ -47,9 +43,10 @@ class BackOut(Leaf):
         self._has_room = bool(clearance_m[0] >= self._enough_m) and at_least_m == 0.0
         self._has_way = len(track) > 1
         if self._has_way and not self._has_room:
-            path = _path_along(track, clearance_m, self._enough_m, at_least_m)
-            self.robot.pilot.follow(path)
-            self.say(f"{path.length_m:.1f} m back along the way driven")
+            along_m = way_along(track)
+            is_enough = (clearance_m >= self._enough_m) & (along_m >= at_least_m) & (along_m > 0.0)
+            last = int(np.argmax(is_enough)) if is_enough.any() else len(track) - 1
+            self.follow(path_along(track[: last + 1], clearance_m[: last + 1]))
 
     def update(self) -> Status:
         """Until the place is reached."""
@@ -59,18 +56,7 @@ class BackOut(Leaf):
         if not self._has_way:
             self.say("no way back: nothing driven yet")
             return Status.FAILURE
-        output = self.robot.pilot.output
-        if output.status is ControlStatus.ARRIVED:
-            return Status.SUCCESS
-        if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:
-            self.say(f"held on the way back: {output.reason or self.robot.pilot.gate_reason}")
-            return Status.FAILURE
-        return Status.RUNNING
-
-    def terminate(self, new_status: Status) -> None:
-        """A way back that is cut off comes to rest."""
-        if new_status is not Status.SUCCESS:
-            self.robot.pilot.hold()
+        return self.watch()
 
     def _is_scan_near(self) -> bool:
         """Whether the newest scan meets something so near that the safety gate may hold the robot."""
@@ -83,18 +69,3 @@ class BackOut(Leaf):
     @property
     def _enough_m(self) -> float:
         return self.robot.footprint_radius_m + self.room
-
-
-def _path_along(
-    track: NDArray[np.float64], clearance_m: NDArray[np.float32], enough_m: float, at_least_m: float
-) -> Path:
-    """The track (two places or more) up to the first with room after the first, or to its end."""
-    along_m = way_along(track)
-    is_enough = (clearance_m >= enough_m) & (along_m >= at_least_m) & (along_m > 0.0)
-    last = int(np.argmax(is_enough)) if is_enough.any() else len(track) - 1
-    track, clearance_m = track[: last + 1], clearance_m[: last + 1]
-    smooth = track.copy()
-    smooth[1:-1] = (track[:-2] + track[1:-1] + track[2:]) / 3.0
-    heading = np.arctan2(*np.diff(smooth, axis=0).T[::-1])
-    poses = np.column_stack((smooth, np.append(heading, heading[-1])))
-    return Path(poses, clearance_m.astype(np.float64))

@@ -20,12 +20,14 @@ _WATCHED_M = 4.0
 _TIGHT_POSES_AHEAD = 2  # about 0.2 m: the gate's brake ends before the place itself
 _NOTHING_M2 = 0.02
 _DETOUR_M = 5.0
+_PASSED_M = 0.2
 
 
 class DriveTo(Leaf):
     """Plans a path to the goal and follows it; plans anew when the path is cut or the robot is held.
 
-    SUCCESS at the goal, or as soon as nothing new is to be seen from it (``until_seen``), or after some way
+    The path goes over what is left of the goal's ``via``. SUCCESS at the goal, or as soon as nothing new is
+    to be seen from it nor from a place still to be passed (``until_seen``), or after some way
     (``look_again``; then also where the way is cut and the one around is 5 m longer). A goal that promises
     less than ``until_seen`` is a scrap: once begun it is driven to, or until nothing of it is left, for
     deciding anew would only trade it for the next scrap.
@@ -61,6 +63,7 @@ class DriveTo(Leaf):
     def initialise(self) -> None:
         """A new drive begins."""
         self._path: Path | None = None
+        self._via = list(self.goal.via)
         self._held = 0
         self._checked_revision = -1
         self._begun_m = self.robot.distance_m
@@ -70,6 +73,7 @@ class DriveTo(Leaf):
         """Plan when there is no path, else watch the one being followed."""
         if self._path is None:
             return self._plan()
+        self._note_passed()
         if self._is_seen():
             return self._stop_here("seen from here")
         output = self.robot.pilot.output
@@ -98,7 +102,7 @@ class DriveTo(Leaf):
     def _plan(self) -> Status:
         goal = self.goal
         try:
-            self._path = self.robot.plan(goal.pose)
+            self._path = self.robot.plan(goal.pose, self._via)
         except (PlanningFailure, ComponentFailure) as refusal:
             self.failure = refusal.code if isinstance(refusal, PlanningFailure) else "planner_failed"
             self.say(f"no path: {refusal}")
@@ -109,6 +113,11 @@ class DriveTo(Leaf):
             f"to ({x:.1f}, {y:.1f}): {self._path.length_m:.1f} m, closest {self._path.min_clearance_m:.2f} m"
         )
         return Status.RUNNING
+
+    def _note_passed(self) -> None:
+        here = self.robot.estimate().T_map_base.xy
+        if self._via and math.dist(self._via[0], here) <= _PASSED_M:
+            del self._via[0]
 
     def _plan_around(self) -> Status:
         """Another plan; where it has become a detour the tree decides anew, if that is asked for."""
@@ -159,16 +168,22 @@ class DriveTo(Leaf):
         if self.until_seen <= 0.0 or self.robot.now_s() < self._next_look_s:
             return False
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
-        area = visible_unknown_area(
+        enough_m2 = _NOTHING_M2 if self._is_scrap else self.until_seen
+        most_m2 = 0.0
+        for place in (self.goal.position, *self._via):
+            most_m2 = max(most_m2, self._area_m2(place))
+            if most_m2 >= enough_m2:
+                return False
+        self.say(f"seen from afar: only {most_m2:.2f} m² would be new")
+        return True
+
+    def _area_m2(self, place: tuple[float, float]) -> float:
+        return visible_unknown_area(
             self.robot.view().ground.grid,
-            self.goal.position,
+            place,
             self.robot.lidar_range_m,
             depth_m=math.inf if self.depth is None else self.depth,
         )
-        if area >= (_NOTHING_M2 if self._is_scrap else self.until_seen):
-            return False
-        self.say(f"seen from afar: only {area:.2f} m² would be new at the goal")
-        return True
 
 
 def _nearest_pose(path: Path, here: Pose2) -> int:

@@ -21,6 +21,7 @@ from explore_bt.exploration import (
     ViewSet,
     choose_views,
     find_free_sectors,
+    first_run,
     next_waypoint,
     order_by_safety,
     order_views,
@@ -47,7 +48,8 @@ class FindView(Search):
     place counts by the new area in view (6). What the paper leaves open, which heading and where to go when
     none is left, is answered by a short tour through the few places that together show what is still to be
     seen; ``rank: gain`` takes the place of greatest gain · exp(−λ travel) instead (González-Baños & Latombe,
-    2002). The present goal is kept unless another tour is clearly better.
+    2002). Views that lie one behind another are one run: its last is the goal, the others are passed on the
+    way (``detour``). A run is kept unless another tour is clearly better.
     What other robots are about to see is left to them while there is anything else.
     SUCCESS with the place in ``goal``; FAILURE once nothing of use is left in reach, with what stays open and
     why in ``left_open``.
@@ -71,6 +73,9 @@ class FindView(Search):
     turn_cost: Input[float] = Input(Length, default=0.6, ge=0.0, doc="what turning round costs")
     keep: Input[float] = Input(
         Length, default=1.0, ge=0.0, doc="how much shorter a tour has to be to give up the present goal"
+    )
+    detour: Input[float] = Input(
+        Length, default=0.5, ge=0.0, doc="what passing places may add to the way before one is a goal itself"
     )
     haste: Input[float] = Input(
         float, default=3.0, ge=0.0, doc="0: the shortest tour; more: what shows much comes early"
@@ -116,10 +121,10 @@ class FindView(Search):
                 chosen = self._choose(places)
                 if self._is_too_little(chosen):
                     break
-                view = self._best(chosen)
-                if math.dist(view.xy, self.here().xy) > HERE_M:
-                    return self._take(view, len(chosen.views))
-                self._give_up_look(view.xy, view.gain_m2)
+                run = self._best_run(chosen)
+                if math.dist(run[0].xy, self.here().xy) > HERE_M:
+                    return self._take(run, len(chosen.views))
+                self._give_up_look(run[0].xy, run[0].gain_m2)
         scraps = ((view.xy, "shows too little to be worth the way") for view in chosen.views)
         reason = f"no reachable place shows {self.min_gain:.2f} m² of new area or more"
         return self.conclude(reason, (*self._still_unseen(), *scraps))
@@ -138,9 +143,8 @@ class FindView(Search):
         )
 
     def _further_places(self) -> NDArray[np.float64]:
-        """(N, 2) the safe headings' waypoints and the present goal."""
-        goal = self._present_goal
-        return np.array([*self._safe_waypoints(), *([goal] if goal else [])]).reshape(-1, 2)
+        """(N, 2) the safe headings' waypoints and the present run."""
+        return np.vstack((np.array(self._safe_waypoints()).reshape(-1, 2), self._present_run))
 
     def _reach(self, margin_m: float) -> Reach:
         view = self.robot.view()
@@ -149,7 +153,7 @@ class FindView(Search):
     def _choose(self, places: ViewPlaces) -> ViewSet:
         tried = np.array([place.position for place in self.tried()]).reshape(-1, 2)
         places = places.without(tried)
-        about = (places, self._outlooks, self.robot.lidar_range_m, self._taste, self._present_goal)
+        about = (places, self._outlooks, self.robot.lidar_range_m, self._taste, self._present_run)
         if self.claimed:
             unclaimed = choose_views(*about, np.array(self.claimed))
             if unclaimed.views:
@@ -157,9 +161,10 @@ class FindView(Search):
         return choose_views(*about)
 
     @property
-    def _present_goal(self) -> tuple[float, float] | None:
+    def _present_run(self) -> NDArray[np.float64]:
+        """(K, 2) metres: the places to pass and, last, the goal; none before the first."""
         goal: Waypoint | None = self.recall("goal", None)
-        return None if goal is None else goal.position
+        return np.array([] if goal is None else [*goal.via, goal.position]).reshape(-1, 2)
 
     def _is_too_little(self, chosen: ViewSet) -> bool:
         """Whether nothing is to be seen, or only scraps that together are not worth the way."""
@@ -168,10 +173,13 @@ class FindView(Search):
         largest_m2 = max((view.gain_m2 for view in chosen.views), default=0.0)
         return not chosen.views or (largest_m2 < _SCRAP_M2 and chosen.total_m2 < self.leave * floor_m2)
 
-    def _best(self, chosen: ViewSet) -> View:
+    def _best_run(self, chosen: ViewSet) -> tuple[View, ...]:
         if self.rank == "gain":
-            return max(chosen.views, key=self._utility)
-        return order_views(chosen, self._first_leg_m, self._taste, self._present_goal)[0]
+            return (max(chosen.views, key=self._utility),)
+        present = self._present_run
+        order = order_views(chosen, self._first_leg_m, self._taste, present)
+        end = tuple(present[-1].tolist()) if len(present) else None
+        return first_run(chosen, order, self.detour, end)
 
     def _safe_waypoints(self) -> list[tuple[float, float]]:
         """Steps 1 to 3 of the paper: a waypoint along the middle of every free sector, the safest first."""
@@ -199,24 +207,26 @@ class FindView(Search):
     def _utility(self, view: View) -> float:
         return view.gain_m2 * math.exp(-self.decay * view.travel_m)
 
-    def _take(self, view: View, count: int) -> Status:
-        (x, y), here = view.xy, self.here()
-        pose = Pose2(x, y, math.atan2(y - here.y, x - here.x))
-        self.goal = Waypoint(pose, "view", view.gain_m2)
+    def _take(self, run: tuple[View, ...], count: int) -> Status:
+        *passed, last = run
+        (x, y), before = last.xy, passed[-1].xy if passed else self.here().xy
+        pose = Pose2(x, y, math.atan2(y - before[1], x - before[0]))
+        self.goal = Waypoint(pose, "view", last.gain_m2, via=tuple(view.xy for view in passed))
+        over = f" over {len(passed)} other{'' if len(passed) == 1 else 's'}" if passed else ""
         self.say(
-            f"{count} view{'' if count == 1 else 's'} to go; "
-            f"→ ({x:.1f}, {y:.1f}), {view.travel_m:.1f} m away, {view.gain_m2:.1f} m² to see"
+            f"{count} view{'' if count == 1 else 's'} to go; → ({x:.1f}, {y:.1f}){over}, "
+            f"{last.travel_m:.1f} m away, {sum(view.gain_m2 for view in run):.1f} m² to see"
         )
         return Status.SUCCESS
 
     def _note_look_in_vain(self) -> None:
         """The goal was come to and still shows enough for one: once left, it would call the robot back."""
-        goal = self._present_goal
-        if goal is None or math.dist(goal, self.here().xy) > HERE_M:
-            return
-        area_m2 = self._area_m2(goal)
-        if area_m2 >= self.min_gain:
-            self._give_up_look(goal, area_m2)
+        for x, y in self._present_run.tolist():
+            if math.dist((x, y), self.here().xy) > HERE_M:
+                continue
+            area_m2 = self._area_m2((x, y))
+            if area_m2 >= self.min_gain:
+                self._give_up_look((x, y), area_m2)
 
     def _give_up_look(self, place: tuple[float, float], area_m2: float) -> None:
         self.give_up(GivenUp(place, f"still {area_m2:.1f} m² unknown after looking from here", was_seen=True))

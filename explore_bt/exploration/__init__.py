@@ -21,7 +21,7 @@ One decision takes the steps of ALGORITHM.md in this order::
 
 What the paper leaves open is answered on the map::
 
-    OccupancyGrid ──► Ground ──► Reach ──► ViewPlaces ──► choose_views ──► order_views
+    OccupancyGrid ──► Ground ──► Reach ──► ViewPlaces ──► choose_views ──► order_views ──► first_run
           └─────────► find_frontiers ──► what_remains, once nothing is left to be seen
 
 ``CoverageMeter`` and ``ate_rmse_m`` measure a run against the truth. ``warm_up`` compiles the kernels.
@@ -47,7 +47,7 @@ from explore_bt.exploration.revisit import is_allowed, repeated_visit
 from explore_bt.exploration.tour import open_tour
 from explore_bt.exploration.travel import nearest_reaching_cell, travel_field
 from explore_bt.exploration.view_places import ViewPlaces
-from explore_bt.exploration.view_tour import TourTaste, View, ViewSet, choose_views, order_views
+from explore_bt.exploration.view_tour import TourTaste, View, ViewSet, choose_views, first_run, order_views
 from explore_bt.exploration.waypoint import next_waypoint
 
 __all__ = [
@@ -72,6 +72,7 @@ __all__ = [
     "clearance_field",
     "find_free_sectors",
     "find_frontiers",
+    "first_run",
     "frontier_mask",
     "gain_many",
     "is_allowed",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,11 +13,12 @@ from explore_bt.exploration.outlook import Outlook, Outlooks
 from explore_bt.exploration.tour import open_tour
 from explore_bt.exploration.view_places import ViewPlaces
 
-__all__ = ["TourTaste", "View", "ViewSet", "choose_views", "order_views"]
+__all__ = ["TourTaste", "View", "ViewSet", "choose_views", "first_run", "order_views"]
 
 _KEPT_WORTH = 1.5
 _BEYOND_M = 10.0
 _APART_M = 1e3
+_SAME_M = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +95,7 @@ def choose_views(
     outlooks: Outlooks,
     range_m: float,
     taste: TourTaste,
-    keep_xy: tuple[float, float] | None = None,
+    kept_xy: NDArray[np.float64] | None = None,
     claimed_xy: NDArray[np.float64] | None = None,
 ) -> ViewSet:
     """Few views that together show what the places can show, near ones first.
@@ -106,7 +107,7 @@ def choose_views(
         outlooks: remembers what they see.
         range_m: the lidar's range.
         taste: see there.
-        keep_xy: the present goal; it counts half as much again.
+        kept_xy: (K, 2) metres, the present goal and the places on the way; they count half as much again.
         claimed_xy: (K, 2) metres, places that others go to: what they show is as good as seen.
     """
     nothing = ViewSet((), np.zeros((1, 1)), 0.0)
@@ -122,7 +123,7 @@ def choose_views(
     total_m2 = float(np.count_nonzero(_cover(outlook, active, size))) * cell_m2
     horizon_m = max(taste.horizon_m, float(near[active].min()) + _BEYOND_M)
     active &= near <= horizon_m
-    favour = _favour(places, keep_xy)
+    favour = _favour(places, kept_xy)
     views: list[View] = []
     fields = [places.reach.from_here_m]
     covered = np.zeros(size, dtype=np.bool_)
@@ -150,10 +151,10 @@ def _cover(outlook: Outlook, active: NDArray[np.bool_], size: int) -> NDArray[np
     return covered
 
 
-def _favour(places: ViewPlaces, keep_xy: tuple[float, float] | None) -> NDArray[np.float64]:
+def _favour(places: ViewPlaces, kept_xy: NDArray[np.float64] | None) -> NDArray[np.float64]:
     favour = np.ones(len(places.blocks))
-    if keep_xy is not None:
-        favour[np.hypot(*(places.xy - keep_xy).T) < 0.5 * places.reach.ground.grid.resolution_m] = _KEPT_WORTH
+    for xy in () if kept_xy is None else kept_xy:
+        favour[np.hypot(*(places.xy - xy).T) < 0.5 * places.reach.ground.grid.resolution_m] = _KEPT_WORTH
     return favour
 
 
@@ -173,7 +174,7 @@ def order_views(
     chosen: ViewSet,
     first_leg_m: Callable[[View], float],
     taste: TourTaste,
-    keep_xy: tuple[float, float] | None = None,
+    kept_xy: NDArray[np.float64] | None = None,
 ) -> tuple[View, ...]:
     """The views in the order of an open tour.
 
@@ -181,11 +182,37 @@ def order_views(
         chosen: as from :func:`choose_views`.
         first_leg_m: what it costs to go to a view next besides the way; so the rules for headings take part.
         taste: see there.
-        keep_xy: the present goal.
+        kept_xy: (K, 2) metres, the present goal and the places on the way there.
     """
     views, between = chosen.views, chosen.between_m.copy()
     for k, view in enumerate(views):
-        is_kept = keep_xy is not None and np.hypot(view.xy[0] - keep_xy[0], view.xy[1] - keep_xy[1]) < 0.1
-        between[0, k + 1] += first_leg_m(view) - (taste.keep_m if is_kept else 0.0)
+        between[0, k + 1] += first_leg_m(view) - (taste.keep_m if _is_among(view, kept_xy) else 0.0)
     weight = np.array([0.0, *(taste.scrap_weight + min(view.gain_m2, 3.0) for view in views)])
     return tuple(views[k - 1] for k in open_tour(between, weight, taste.haste)[1:])
+
+
+def _is_among(view: View, places_xy: NDArray[np.float64] | None) -> bool:
+    return places_xy is not None and bool((np.hypot(*(places_xy - view.xy).T) < _SAME_M).any())
+
+
+def first_run(
+    chosen: ViewSet, order: Sequence[View], detour_m: float, end_xy: tuple[float, float] | None = None
+) -> tuple[View, ...]:
+    """The views that lie one behind another as a tour begins: the robot passes all but the last of them.
+
+    Args:
+        chosen: as from :func:`choose_views`.
+        order: the tour, as from :func:`order_views`.
+        detour_m: by how much the way over them may be longer than the way straight to the last.
+        end_xy: where the present run ends; one that comes to it ends there too.
+    """
+    number = {view: k for k, view in enumerate(chosen.views, start=1)}
+    run, way_m = [order[0]], chosen.between_m[0, number[order[0]]]
+    for view in order[1:]:
+        if end_xy is not None and np.hypot(run[-1].xy[0] - end_xy[0], run[-1].xy[1] - end_xy[1]) < _SAME_M:
+            break
+        way_m += chosen.between_m[number[run[-1]], number[view]]
+        if way_m > chosen.between_m[0, number[view]] + detour_m:
+            break
+        run.append(view)
+    return tuple(run)

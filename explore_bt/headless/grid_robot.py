@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from explore_bt.exploration import scan_of_grid
 from explore_bt.headless.grid_pilot import GridPilot
 from explore_bt.interfaces import MapMemory, MapView, Planner
+from explore_bt.runtime.legs import plan_through
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.types import Budget, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
@@ -91,9 +93,12 @@ class GridRobot:
             self._scan = scan_of_grid(self._grid, self._pose, self.lidar_range_m, stamp_s=self.now_s())
         return self._scan
 
-    def plan(self, goal: Pose2) -> Path:
+    def plan(self, goal: Pose2, via: Sequence[tuple[float, float]] = ()) -> Path:
         """A path from the pose that was reported; raises a ``PlanningFailure``."""
-        return self._planner.plan(self.view().grid, self._pose, goal, self.footprint_radius_m + _GRAZE_M)
+        grid, radius_m = self.view().grid, self.footprint_radius_m + _GRAZE_M
+        return plan_through(
+            lambda start, end: self._planner.plan(grid, start, end, radius_m), self._pose, via, goal
+        )
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place where the caller got no farther."""

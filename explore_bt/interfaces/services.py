@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Protocol
 
@@ -121,8 +122,11 @@ class RobotServices(Protocol):
     def scan(self) -> Scan2D | None:
         """The newest scan, None before the first."""
 
-    def plan(self, goal: Pose2) -> Path:
-        """A path from here, by the mission's planner; raises a ``PlanningFailure``."""
+    def plan(self, goal: Pose2, via: Sequence[tuple[float, float]] = ()) -> Path:
+        """A path from here, by the mission's planner; raises a ``PlanningFailure``.
+
+        It passes the places of ``via`` in their order, but those that no way leads over.
+        """
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place (x, y, metres, ``map`` frame) that proved too tight: plans and maps shun it."""

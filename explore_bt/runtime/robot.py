@@ -26,6 +26,7 @@ from explore_bt.interfaces import (
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.health_news import HealthNews
+from explore_bt.runtime.legs import plan_through
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.safety_gate import SafetyGate
@@ -176,8 +177,8 @@ class Robot:
         """The newest scan, None before the first."""
         return self._scan
 
-    def plan(self, goal: Pose2) -> Path:
-        """A path from where the robot is now.
+    def plan(self, goal: Pose2, via: Sequence[tuple[float, float]] = ()) -> Path:
+        """A path from where the robot is now, over the places of ``via`` that can be come to.
 
         Raises:
             PlanningFailure: the planner's typed no.
@@ -186,7 +187,7 @@ class Robot:
         straight_m = self.estimate().T_map_base.distance_to(goal)
         try:
             path = plan_or_squeeze(
-                lambda radius_m: self._plan(goal, radius_m), self.footprint_radius_m, straight_m
+                lambda radius_m: self._plan(goal, via, radius_m), self.footprint_radius_m, straight_m
             )
             return centred(path, self._seen_points(), self.view().grid, self.footprint_radius_m)
         except (PlanningFailure, UserError):
@@ -196,11 +197,16 @@ class Robot:
             self._note_failure(failure.component, error)
             raise failure from error
 
-    def _plan(self, goal: Pose2, radius_m: float) -> Path:
+    def _plan(self, goal: Pose2, via: Sequence[tuple[float, float]], radius_m: float) -> Path:
         here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
         grid = self.view().grid
         self._tell_change(grid)
-        return self._planner.plan(grid, here, goal, radius_m, lambda: self._stop.is_raised)
+        return plan_through(
+            lambda start, end: self._planner.plan(grid, start, end, radius_m, lambda: self._stop.is_raised),
+            here,
+            via,
+            goal,
+        )
 
     def _tell_change(self, grid: OccupancyGrid) -> None:
         """Tell the planner where the map differs from the one planned on before, if SLAM knows.

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
+
 import numpy as np
 
 from explore_bt.errors import PlanningFailure
@@ -92,13 +95,14 @@ class FakeRobot:
         self.avoided.clear()
         return count
 
-    def plan(self, goal: Pose2) -> Path:
-        """A straight line, or the ``refusal``."""
+    def plan(self, goal: Pose2, via: Sequence[tuple[float, float]] = ()) -> Path:
+        """Straight lines over all of them, or the ``refusal``."""
         if self.refusal is not None:
             raise self.refusal
-        xs = np.linspace(self.pose.x, goal.x, 11)
-        ys = np.linspace(self.pose.y, goal.y, 11)
-        return Path(np.column_stack((xs, ys, np.full(11, goal.yaw_rad))), np.full(11, 1.0))
+        corners = (self.pose.xy, *via, goal.xy)
+        legs = [np.linspace(*leg, 11)[:-1] for leg in pairwise(corners)]
+        xys = np.vstack((*legs, goal.xy))
+        return Path(np.column_stack((xys, np.full(len(xys), goal.yaw_rad))), np.ones(len(xys)))
 
 
 def full_circle_scan(ranges_m: float | np.ndarray = np.inf, beams: int = 360, range_m: float = 5.0) -> Scan2D:

@@ -61,12 +61,14 @@ class Waypoint:
         reason: why it was chosen, a word or two.
         expected_gain_m2: new floor expected to be seen from it.
         looks_at: (x, y) metres of the frontier it is meant to see; None if it is not about one.
+        via: (x, y) metres of places to pass on the way there, in this order.
     """
 
     pose: Pose2
     reason: str = ""
     expected_gain_m2: float = 0.0
     looks_at: tuple[float, float] | None = None
+    via: tuple[tuple[float, float], ...] = ()
 
     @property
     def position(self) -> tuple[float, float]:

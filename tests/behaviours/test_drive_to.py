@@ -128,9 +128,38 @@ def test_a_cut_way_with_a_long_one_around_lets_the_tree_decide_anew(
 ) -> None:
     robot = FakeRobot(open_floor())
     leaf = drive(robot, look_again=look_again)
-    robot.plan = lambda goal: Path(np.array([[0, 0, 0], [4, 4, 0], [*goal.xy, 0]], float), np.ones(3))
+    robot.plan = lambda goal, via: Path(np.array([[0, 0, 0], [4, 4, 0], [*goal.xy, 0]], float), np.ones(3))
     cells = robot.grid.cells.copy()
     cells[robot.grid.cell_of(2.0, 0.0)] = OCCUPIED
     robot.grid = OccupancyGrid(cells, robot.grid.resolution_m, robot.grid.origin_xy, revision=1)
     leaf.tick_once()
     assert leaf.status is status
+
+
+def test_places_on_the_way_are_passed_in_their_order_and_once() -> None:
+    robot = FakeRobot(open_floor())
+    asked: list[tuple[tuple[float, float], ...]] = []
+    straight = robot.plan
+    robot.plan = lambda goal, via: (asked.append(tuple(via)), straight(goal))[1]
+    goal = Waypoint(Pose2(4.0, 0.0, 0.0), via=((1.0, 0.0), (2.0, 0.0)))
+    leaf = drive(robot, goal, patience=1.0)
+    robot.pose = Pose2(1.1, 0.0, 0.0)
+    leaf.tick_once()
+    robot.pilot.blocked_s = 1.5
+    leaf.tick_once()
+    assert asked == [((1.0, 0.0), (2.0, 0.0)), ((2.0, 0.0),)]
+
+
+def test_a_goal_that_is_seen_is_driven_to_while_a_place_on_the_way_is_not() -> None:
+    cells = open_floor(12.0, 0.1).cells.copy()
+    cells[60:, :60] = UNKNOWN  # seen from the place on the way, hidden from the goal by the wall
+    cells[58:, 60] = OCCUPIED
+    cells[[0, -1], :] = cells[:, [0, -1]] = OCCUPIED
+    robot = FakeRobot(OccupancyGrid(cells, 0.1, (-6.0, -6.0)), Pose2(-4.0, -3.0, 0.0))
+    through = Waypoint(Pose2(4.0, 3.0, 0.0), via=((-2.0, -1.0),))
+    straight = Waypoint(Pose2(4.0, 3.0, 0.0))
+    for goal, status in ((through, Status.RUNNING), (straight, Status.SUCCESS)):
+        leaf = drive(robot, goal, until_seen=0.3)
+        robot.time_s += 1.5
+        leaf.tick_once()
+        assert leaf.status is status

@@ -15,6 +15,7 @@ from explore_bt.exploration import (
     ViewSet,
     choose_views,
     clearance_field,
+    first_run,
     order_views,
 )
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
@@ -92,5 +93,37 @@ def test_the_order_is_the_shortest_unless_the_first_leg_costs_more() -> None:
 def test_the_present_goal_is_kept_against_a_tour_not_clearly_shorter() -> None:
     slightly = TourTaste(haste=0.0, keep_m=1.0)
     firmly = TourTaste(haste=0.0, keep_m=2.5)
-    assert order_views(three_views(), lambda _: 0.0, slightly, (2.0, 0.0))[0].xy[0] == -2.0
-    assert order_views(three_views(), lambda _: 0.0, firmly, (2.0, 0.0))[0].xy[0] == 2.0
+    assert order_views(three_views(), lambda _: 0.0, slightly, np.array([[2.0, 0.0]]))[0].xy[0] == -2.0
+    assert order_views(three_views(), lambda _: 0.0, firmly, np.array([[2.0, 0.0]]))[0].xy[0] == 2.0
+
+
+def spread(xys: list[tuple[float, float]]) -> ViewSet:
+    """Views on an open floor around a robot at (0, 0), where ways are straight."""
+    points = np.array([(0.0, 0.0), *xys])
+    between = np.hypot(*(points[:, None] - points[None]).T)
+    views = tuple(View(xy, 1.0, float(np.hypot(*xy)), (0, 0)) for xy in xys)
+    return ViewSet(views, between, float(len(xys)))
+
+
+def test_views_one_behind_another_are_one_run_and_those_aside_are_not() -> None:
+    chosen = spread([(1.0, 0.1), (2.5, 0.0), (2.5, 2.0), (4.0, 2.0)])
+    assert first_run(chosen, chosen.views, 0.5) == chosen.views[:2]
+    assert first_run(chosen, chosen.views, 2.0) == chosen.views
+    assert first_run(chosen, chosen.views, 0.0) == chosen.views[:1]
+
+
+def test_a_run_ends_where_the_present_one_does() -> None:
+    chosen = spread([(1.0, 0.0), (2.0, 0.0), (3.0, 0.0)])
+    assert first_run(chosen, chosen.views, 0.5, end_xy=(2.0, 0.0)) == chosen.views[:2]
+    assert first_run(chosen, chosen.views, 0.5, end_xy=(2.0, 3.0)) == chosen.views
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_no_run_is_longer_than_the_way_straight_to_its_end_and_the_detour(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    chosen = spread([(float(x), float(y)) for x, y in rng.uniform(-3.0, 3.0, (8, 2))])
+    order = [chosen.views[k] for k in rng.permutation(8)]
+    run = first_run(chosen, order, 0.7)
+    assert list(run) == order[: len(run)]
+    way = np.array([(0.0, 0.0), *(view.xy for view in run)])
+    assert np.hypot(*np.diff(way, axis=0).T).sum() <= np.hypot(*way[-1]) + 0.7 + 1e-9
