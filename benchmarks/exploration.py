@@ -65,7 +65,12 @@ def main() -> None:
 def _arguments() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--maps", default="*/*.yaml", metavar="GLOB", help="below floorplans/, or of files")
-    parser.add_argument("--strategies", default=f"complete,{PLAIN}", metavar="A,B", help=f"or {PLAIN}")
+    parser.add_argument(
+        "--strategies",
+        default=f"complete,{PLAIN}",
+        metavar="A,B",
+        help=f"or {PLAIN}; NAME@W: with safety weight W",
+    )
     parser.add_argument("--starts", type=int, default=4, metavar="N", help="on each map")
     parser.add_argument("--seeds", type=int, default=1, metavar="N", help="each with starts of its own")
     parser.add_argument(

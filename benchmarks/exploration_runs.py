@@ -155,7 +155,13 @@ def _decider(strategy: str, settings: TrialSettings) -> Decider:
         return PlainNearestFrontier(settings.radius_m)
     from explore_bt import Explorer  # only here: the baseline needs none
 
-    return Explorer(strategy=strategy, robot_radius_m=settings.radius_m, lidar_range_m=settings.range_m)
+    name, _, weight = strategy.partition("@")
+    return Explorer(
+        strategy=name,
+        robot_radius_m=settings.radius_m,
+        lidar_range_m=settings.range_m,
+        safety_weight=float(weight) if weight else None,
+    )
 
 
 def _tour(stage: Stage, task: Task) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import overload
 
 from explore_bt.exploration import warm_up
-from explore_bt.exploration.arguments import require_positive
+from explore_bt.exploration.arguments import require_at_least, require_positive
 from explore_bt.headless.decision import Decision
 from explore_bt.headless.explorer_robot import ExplorerRobot
 from explore_bt.headless.grid_robot import GridRobot
@@ -33,6 +33,7 @@ class Explorer:
         strategy: str | Path = "complete",
         robot_radius_m: float = 0.2,
         lidar_range_m: float = 5.0,
+        safety_weight: float | None = None,
     ) -> None:
         """Read the tree and compile every kernel (seconds the first time, then from a cache).
 
@@ -40,15 +41,20 @@ class Explorer:
             strategy: a name of ``explore_bt.headless.STRATEGIES``, or a file of trees.
             robot_radius_m: the circular footprint.
             lidar_range_m: how far the lidar sees, all round.
+            safety_weight: what a metre with hardly room for the footprint costs more than one with 1.5 m of
+                clearance: more gives roomier and longer ways. None: as in missions, where 0.6 m is enough.
 
         Raises:
-            UserError: no such strategy, faults in its file, or a length not above zero.
+            UserError: no such strategy, faults in its file, a length not above zero, a weight below.
         """
         require_positive(robot_radius_m=robot_radius_m, lidar_range_m=lidar_range_m)
+        if safety_weight is not None:
+            require_at_least(0.0, safety_weight=safety_weight)
+        self._safety_weight = safety_weight
         self._radius_m, self._range_m = robot_radius_m, lidar_range_m
         self._registry = load_plugins().registry
         self._tree = read_strategy(strategy, self._registry)
-        make_planner(self._registry, robot_radius_m)
+        make_planner(self._registry, robot_radius_m, safety_weight)
         warm_up()
         self._robots: dict[str, ExplorerRobot] = {}
 
@@ -77,7 +83,7 @@ class Explorer:
 
     def _robot(self, name: str) -> ExplorerRobot:
         if name not in self._robots:
-            planner = make_planner(self._registry, self._radius_m)
+            planner = make_planner(self._registry, self._radius_m, self._safety_weight)
             body = GridRobot(name, planner, self._radius_m, self._range_m)
             self._robots[name] = ExplorerRobot(body, self._tree)
         return self._robots[name]

@@ -12,6 +12,7 @@ from explore_bt.plugin import Registry
 
 __all__ = ["STRATEGIES", "make_planner", "read_strategy"]
 
+_ROOMY_M = 1.5
 STRATEGIES = ("complete", "paper", "nearest_frontier", "information_gain", "tour")
 """Names of the trees below ``missions/trees``."""
 
@@ -37,9 +38,19 @@ def read_strategy(strategy: str | Path, registry: Registry) -> NodeSpec:
     return load_tree(path, (f"explore_{path.stem}", path.stem), registry)
 
 
-def make_planner(registry: Registry, footprint_radius_m: float) -> Planner:
-    """The skeleton planner with its defaults, set up; one for each robot: it remembers its last route."""
+def make_planner(
+    registry: Registry, footprint_radius_m: float, safety_weight: float | None = None
+) -> Planner:
+    """The skeleton planner, set up; one for each robot: it remembers its last route.
+
+    Args:
+        registry: the installed plugins.
+        footprint_radius_m: the circular footprint.
+        safety_weight: what a metre at the least clearance costs more than one with 1.5 m; the planner's
+            defaults if None.
+    """
     cls: type[Planner] = registry.get("planner", "skeleton")
-    planner = cls(cls.Options())
+    taste = {} if safety_weight is None else {"comfortable": _ROOMY_M, "clearance_weight": safety_weight}
+    planner = cls(cls.Options.model_validate(taste))
     planner.setup(RobotContext(footprint_radius_m=footprint_radius_m))
     return planner

@@ -48,6 +48,25 @@ def test_an_unknown_strategy_is_refused_with_a_list_of_those_there_are() -> None
         Explorer("nearst")
 
 
+def test_more_safety_weight_gives_a_roomier_way() -> None:
+    cells = np.full((80, 80), FREE, dtype=np.int8)
+    cells[[0, -1], :] = cells[:, [0, -1]] = OCCUPIED
+    cells[20:60, 20:60] = OCCUPIED
+    cells[50:, 64:] = UNKNOWN
+    grid = OccupancyGrid(cells, 0.1, (0.0, 0.0))
+    least_m = []
+    for weight in (0.0, 12.0):
+        path = Explorer(robot_radius_m=0.2, safety_weight=weight).decide(grid, Pose2(3.5, 0.5, 0.0)).path
+        assert path is not None
+        least_m.append(float(np.mean(path.clearance_m)))
+    assert least_m[1] > 1.2 * least_m[0]
+
+
+def test_a_safety_weight_below_zero_is_refused() -> None:
+    with pytest.raises(UserError, match="safety_weight: -1 found, expected a finite number of at least 0"):
+        Explorer(safety_weight=-1)
+
+
 def test_once_over_it_stays_over() -> None:
     explorer = Explorer(robot_radius_m=0.2)
     *_, (grid, pose, decision) = explore(explorer, flat(), START)
