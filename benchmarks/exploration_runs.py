@@ -156,12 +156,8 @@ def _decider(strategy: str, settings: TrialSettings) -> Decider:
     from explore_bt import Explorer  # only here: the baseline needs none
 
     name, _, weight = strategy.partition("@")
-    return Explorer(
-        strategy=name,
-        robot_radius_m=settings.radius_m,
-        lidar_range_m=settings.range_m,
-        safety_weight=float(weight) if weight else None,
-    )
+    taste = {"safety_weight": float(weight)} if weight else {}
+    return Explorer(name, robot_radius_m=settings.radius_m, lidar_range_m=settings.range_m, **taste)
 
 
 def _tour(stage: Stage, task: Task) -> dict[str, Any]:

@@ -23,6 +23,8 @@ from explore_bt.types import OccupancyGrid, Pose2
 __all__ = ["CanvasDrawer", "Stage", "set_stage"]
 
 MAP_RESOLUTION_M = 0.05
+_INTO_THE_WALL_M = 0.001
+"""Walls that follow the cells return from the border between two: rounding should not say which is solid."""
 
 
 class CanvasDrawer:
@@ -34,7 +36,7 @@ class CanvasDrawer:
 
     def see(self, pose: Pose2, angles_rad: NDArray[np.float64], ranges_m: NDArray[np.float64]) -> None:
         """Draw one scan."""
-        reach = np.minimum(ranges_m, self._range_m)
+        reach = np.minimum(ranges_m + _INTO_THE_WALL_M, self._range_m)
         ends = np.column_stack((reach * np.cos(angles_rad), reach * np.sin(angles_rad))).astype(np.float32)
         sweep = Sweep(0.0, np.zeros_like(ends), ends, np.isfinite(ranges_m))
         self._canvas.draw(sweep, Pose2(*pose.xy, 0.0))  # the directions are the map's already

@@ -33,7 +33,7 @@ class Explorer:
         strategy: str | Path = "complete",
         robot_radius_m: float = 0.2,
         lidar_range_m: float = 5.0,
-        safety_weight: float | None = None,
+        safety_weight: float = 3.0,
     ) -> None:
         """Read the tree and compile every kernel (seconds the first time, then from a cache).
 
@@ -42,14 +42,13 @@ class Explorer:
             robot_radius_m: the circular footprint.
             lidar_range_m: how far the lidar sees, all round.
             safety_weight: what a metre with hardly room for the footprint costs more than one with 1.5 m of
-                clearance: more gives roomier and longer ways. None: as in missions, where 0.6 m is enough.
+                clearance: more gives roomier and longer ways.
 
         Raises:
             UserError: no such strategy, faults in its file, a length not above zero, a weight below.
         """
         require_positive(robot_radius_m=robot_radius_m, lidar_range_m=lidar_range_m)
-        if safety_weight is not None:
-            require_at_least(0.0, safety_weight=safety_weight)
+        require_at_least(0.0, safety_weight=safety_weight)
         self._safety_weight = safety_weight
         self._radius_m, self._range_m = robot_radius_m, lidar_range_m
         self._registry = load_plugins().registry

@@ -38,19 +38,16 @@ def read_strategy(strategy: str | Path, registry: Registry) -> NodeSpec:
     return load_tree(path, (f"explore_{path.stem}", path.stem), registry)
 
 
-def make_planner(
-    registry: Registry, footprint_radius_m: float, safety_weight: float | None = None
-) -> Planner:
+def make_planner(registry: Registry, footprint_radius_m: float, safety_weight: float) -> Planner:
     """The skeleton planner, set up; one for each robot: it remembers its last route.
 
     Args:
         registry: the installed plugins.
         footprint_radius_m: the circular footprint.
-        safety_weight: what a metre at the least clearance costs more than one with 1.5 m; the planner's
-            defaults if None.
+        safety_weight: what a metre at the least clearance costs more than one with 1.5 m.
     """
     cls: type[Planner] = registry.get("planner", "skeleton")
-    taste = {} if safety_weight is None else {"comfortable": _ROOMY_M, "clearance_weight": safety_weight}
+    taste = {"comfortable": _ROOMY_M, "clearance_weight": safety_weight}
     planner = cls(cls.Options.model_validate(taste))
     planner.setup(RobotContext(footprint_radius_m=footprint_radius_m))
     return planner
