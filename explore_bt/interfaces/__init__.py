@@ -10,6 +10,7 @@ from explore_bt.interfaces.services import MapMemory, MapView, Pilot, RobotServi
 from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.slam import Slam
 from explore_bt.interfaces.snapshot import Event, NodeInfo, NodeState, RobotSnapshot, RunInfo, TickSnapshot
+from explore_bt.interfaces.surroundings import Surroundings
 from explore_bt.interfaces.truth import GroundTruth
 
 __all__ = [
@@ -38,6 +39,7 @@ __all__ = [
     "RunInfo",
     "Sink",
     "Slam",
+    "Surroundings",
     "TickSnapshot",
     "never",
 ]

@@ -7,6 +7,7 @@ from abc import abstractmethod
 from dataclasses import dataclass
 
 from explore_bt.interfaces.plugin import Plugin, RobotContext
+from explore_bt.interfaces.surroundings import Surroundings
 from explore_bt.types import Estimate, MotionState, Path, Scan2D, Twist2
 
 __all__ = ["ControlOutput", "ControlStatus", "Controller"]
@@ -52,6 +53,12 @@ class Controller(Plugin):
     @abstractmethod
     def hold(self) -> None:
         """Come to rest under the limits and stay; status becomes ``idle`` once at rest."""
+
+    def see(self, surroundings: Surroundings) -> None:
+        """What is around the robot, told after every scan; for controllers that steer clear of it.
+
+        Whatever a controller makes of it, the safety gate checks every command.
+        """
 
     @abstractmethod
     def step(

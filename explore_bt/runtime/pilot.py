@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
-from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver
+from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, Surroundings
 from explore_bt.runtime.pose_predictor import PosePredictor
 from explore_bt.runtime.safety_gate import SafetyGate
-from explore_bt.types import Estimate, Health, MotionState, OccupancyGrid, Path, Scan2D, Twist2
+from explore_bt.types import Estimate, Health, MotionState, Path, Scan2D, Twist2
 
 __all__ = ["Pilot"]
 
@@ -39,6 +36,7 @@ class Pilot:
         self._blocked_by_obstacle = False
         self._now_s = 0.0
         self._shown: Estimate | None = None
+        self._unseen: Surroundings | None = None
 
     @property
     def output(self) -> ControlOutput:
@@ -73,12 +71,13 @@ class Pilot:
         self.path = None
         self._controller.hold()
 
-    def see(self, points: NDArray[np.float64], grid: OccupancyGrid, estimate: Estimate) -> None:
-        """Show the newest scan (returns, ``map`` frame) and map to the gate."""
+    def see(self, surroundings: Surroundings, estimate: Estimate) -> None:
+        """Show what is around the robot to controller and gate."""
         if self._has_jumped(estimate):
             self._gate.forget_scans()
         self._shown = estimate
-        self._gate.see(points, grid, estimate.T_map_base)
+        self._gate.see(surroundings, estimate.T_map_base)
+        self._unseen = surroundings
 
     def _has_jumped(self, estimate: Estimate) -> bool:
         """Whether the pose is elsewhere than the last one and the commands since then lead to."""
@@ -96,6 +95,9 @@ class Pilot:
         """One control period: ask the controller, pass its wish through the gate, send the outcome."""
         self._now_s = now_s
         now = self.predict(estimate, now_s)
+        if self._unseen is not None:
+            surroundings, self._unseen = self._unseen, None
+            self._controller.see(surroundings)
         self._output = self._controller.step(now, scan, self.motion, dt_s)
         fault = _unfit_to_drive(estimate, scan, now_s)
         if fault:

@@ -22,6 +22,7 @@ from explore_bt.interfaces import (
     NodeState,
     RobotContext,
     RobotSnapshot,
+    Surroundings,
 )
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
@@ -327,7 +328,9 @@ class Robot:
             _log.error("robot %s: %s failed", self.name, component, exc_info=error)
 
     def _show_gate(self) -> None:
-        self.pilot.see(self._seen_points(), self.slam.grid(), self.slam.estimate())
+        assert self._scan is not None
+        surroundings = Surroundings(self._scan.stamp_s, self._seen_points(), self.slam.grid())
+        self.pilot.see(surroundings, self.slam.estimate())
 
     def _seen_points(self) -> NDArray[np.float64]:
         """(N, 2) metres, ``map`` frame: the newest scan's returns, less noisy close by."""

@@ -16,9 +16,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from explore_bt.interfaces import Surroundings
 from explore_bt.runtime.brake import brake_duration_s, brake_velocity
 from explore_bt.runtime.clearance_window import ClearanceWindow
-from explore_bt.types import MotionLimits, MotionState, OccupancyGrid, Pose2, Twist2
+from explore_bt.types import MotionLimits, MotionState, Pose2, Twist2
 
 __all__ = ["GateDecision", "SafetyGate"]
 
@@ -71,17 +72,17 @@ class SafetyGate:
         self._is_held = False
         self._scans: deque[NDArray[np.float64]] = deque(maxlen=max(count for count, _ in VOTES))
 
-    def see(self, points: NDArray[np.float64], grid: OccupancyGrid, near: Pose2) -> None:
+    def see(self, surroundings: Surroundings, near: Pose2) -> None:
         """Take the newest scan and map.
 
         Args:
-            points: (N, 2) float64, metres, ``map`` frame: the scan's returns.
-            grid: the newest map.
+            surroundings: what is around the robot.
             near: where the robot is; the map is looked at around it.
         """
+        points = surroundings.points
         is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
         self._scans.append(np.ascontiguousarray(points[is_near]))
-        self._window.cut(grid, near, points)
+        self._window.cut(surroundings.grid, near, points)
 
     def forget_scans(self) -> None:
         """The scans seen so far no longer lie where the pose says: a loop closure moved it."""

@@ -16,6 +16,7 @@ from explore_bt.types.measurement import (
     WheelOdometry,
 )
 from explore_bt.types.motion import MotionLimits, MotionState
+from explore_bt.types.moving import MovingObstacle
 from explore_bt.types.path import Path, Waypoint, way_along
 from explore_bt.types.pose import Pose2, Twist2, wrap_angle
 from explore_bt.types.result import MappingResult, Outcome, Result, Score
@@ -36,6 +37,7 @@ __all__ = [
     "Measurement",
     "MotionLimits",
     "MotionState",
+    "MovingObstacle",
     "OccupancyGrid",
     "Outcome",
     "Path",

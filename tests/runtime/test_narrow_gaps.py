@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from explore_bt import types
-from explore_bt.interfaces import ControlStatus, RobotContext
+from explore_bt.interfaces import ControlStatus, RobotContext, Surroundings
 from explore_bt.mission import load_mission
 from explore_bt.plugin import Registry, load_plugins
 from explore_bt.runtime.pilot import Pilot
@@ -79,7 +79,9 @@ def drive_through(
                 x, y, yaw = rng.normal(0.0, pose_noise_m, 3) * (1.0, 1.0, 0.3)
                 true = truth.pose()
                 estimate = Estimate(scan.stamp_s, Pose2(true.x + x, true.y + y, true.yaw_rad + yaw))
-                pilot.see(estimate.T_map_base.apply(steadied(scan).points()), FLOOR, estimate)
+                pilot.see(
+                    Surroundings(0.0, estimate.T_map_base.apply(steadied(scan).points()), FLOOR), estimate
+                )
         pilot.step(estimate, scan, now_s, DT)
         closest_m = min(closest_m, truth.clearance_m())
         if pilot.output.status is ControlStatus.ARRIVED:

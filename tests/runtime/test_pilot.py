@@ -4,7 +4,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver
+from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, Surroundings
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.testing.fake_robot import full_circle_scan, open_floor
@@ -17,6 +17,9 @@ POST = np.array([[0.25, 0.0]])
 
 class StraightOn:
     """Sets off gently, whatever comes."""
+
+    def see(self, surroundings: Surroundings) -> None:
+        """It does not look."""
 
     def step(self, *_: object) -> ControlOutput:
         return ControlOutput(Twist2(0.01, 0.0), ControlStatus.RUNNING)
@@ -36,7 +39,7 @@ def pilot() -> Pilot:
 
 def show(pilot: Pilot, stamp_s: float, pose: Pose2, points: np.ndarray) -> Estimate:
     estimate = Estimate(stamp_s, pose)
-    pilot.see(points, FLOOR, estimate)
+    pilot.see(Surroundings(0.0, points, FLOOR), estimate)
     return estimate
 
 

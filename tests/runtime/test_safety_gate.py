@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from explore_bt.interfaces import Surroundings
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, MotionLimits, MotionState, OccupancyGrid, Pose2, Twist2
 
@@ -73,7 +74,7 @@ def test_whatever_is_wanted_the_footprint_never_leaves_free_space(
     gate = SafetyGate(RADIUS, LIMITS)
     pose, motion = Pose2(2.0, 0.0, yaw), MotionState()
     for _ in range(160):
-        gate.see(np.empty((0, 2)), grid, pose)
+        gate.see(Surroundings(0.0, np.empty((0, 2)), grid), pose)
         decision = gate.decide(_towards(Twist2(v, w), motion), pose, motion, DT)
         mean_v = 0.5 * (motion.twist.linear_mps + decision.motion.twist.linear_mps)
         mean_w = 0.5 * (motion.twist.angular_rps + decision.motion.twist.angular_rps)
@@ -90,7 +91,7 @@ def test_whatever_is_wanted_the_footprint_never_leaves_free_space(
 def test_driving_at_a_wall_ends_at_rest_with_the_reason_in_words() -> None:
     grid = corridor_with_end(OCCUPIED)
     gate = SafetyGate(RADIUS, LIMITS)
-    gate.see(np.empty((0, 2)), grid, Pose2(3.0, 0.0, 0.0))
+    gate.see(Surroundings(0.0, np.empty((0, 2)), grid), Pose2(3.0, 0.0, 0.0))
     pose, motion, reason = drive(gate, Twist2(0.5, 0.0), Pose2(2.5, 0.0, 0.0), 200)
     assert abs(motion.twist.linear_mps) < 1e-3
     assert pose.x < 4.0 - RADIUS
@@ -102,7 +103,7 @@ def test_an_obstacle_only_the_scan_knows_is_enough_to_brake() -> None:
     grid = corridor_with_end(OCCUPIED)
     gate = SafetyGate(RADIUS, LIMITS)
     post = np.array([[2.0, 0.1]])
-    gate.see(post, grid, Pose2(1.0, 0.0, 0.0))
+    gate.see(Surroundings(0.0, post, grid), Pose2(1.0, 0.0, 0.0))
     pose, motion, reason = drive(gate, Twist2(0.5, 0.0), Pose2(0.6, 0.0, 0.0), 200)
     assert abs(motion.twist.linear_mps) < 1e-3
     assert math.hypot(2.0 - pose.x, 0.1 - pose.y) >= RADIUS
@@ -113,7 +114,7 @@ def test_a_robot_that_stands_too_close_may_leave_but_not_come_closer() -> None:
     grid = corridor_with_end(OCCUPIED)
     start = Pose2(3.8, 0.0, 0.0)  # 0.2 m from the end wall, the footprint needs 0.25 m
     gate = SafetyGate(RADIUS, LIMITS)
-    gate.see(np.empty((0, 2)), grid, start)
+    gate.see(Surroundings(0.0, np.empty((0, 2)), grid), start)
     ahead, _, _ = drive(gate, Twist2(0.3, 0.0), start, 40)
     back, _, _ = drive(gate, Twist2(-0.3, 0.0), start, 40)
     assert abs(ahead.x - start.x) < RESOLUTION
@@ -129,7 +130,7 @@ def test_turning_on_the_spot_is_always_allowed() -> None:
 
 def test_outside_the_known_map_nothing_but_turning_is_allowed() -> None:
     gate = SafetyGate(RADIUS, LIMITS)
-    gate.see(np.empty((0, 2)), corridor_with_end(OCCUPIED), Pose2(50.0, 0.0, 0.0))
+    gate.see(Surroundings(0.0, np.empty((0, 2)), corridor_with_end(OCCUPIED)), Pose2(50.0, 0.0, 0.0))
     pose, _, reason = drive(gate, Twist2(0.5, 0.0), Pose2(50.0, 0.0, 0.0), 40)
     assert pose.x == 50.0
     assert reason
