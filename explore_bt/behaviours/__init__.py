@@ -9,6 +9,7 @@ from explore_bt.behaviours.find_next_heading import FindNextHeading
 from explore_bt.behaviours.find_view import FindView
 from explore_bt.behaviours.give_up_goal import GivenUp, GiveUpGoal
 from explore_bt.behaviours.leave_pocket import LeavePocket
+from explore_bt.behaviours.make_way import MakeWay
 from explore_bt.behaviours.record_waypoint import RecordWaypoint
 from explore_bt.behaviours.reset_half_planes import ResetHalfPlanes
 from explore_bt.behaviours.stop_requested import StopRequested
@@ -30,6 +31,7 @@ __all__ = [
     "GiveUpGoal",
     "GivenUp",
     "LeavePocket",
+    "MakeWay",
     "RecordWaypoint",
     "ResetHalfPlanes",
     "StopRequested",
@@ -50,6 +52,7 @@ LEAVES = (
     FindView,
     GiveUpGoal,
     LeavePocket,
+    MakeWay,
     RecordWaypoint,
     ResetHalfPlanes,
     StopRequested,

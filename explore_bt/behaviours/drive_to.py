@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from explore_bt.behaviours.make_way import SOMEONE, someone_is_in_the_way
 from explore_bt.errors import ComponentFailure, PlanningFailure
 from explore_bt.exploration import clearance_at, visible_unknown_area
-from explore_bt.interfaces import ControlStatus
+from explore_bt.interfaces import ControlStatus, HeldBy
 from explore_bt.tree import Input, Key, Leaf, Output, Status
 from explore_bt.types import Path, Pose2, Waypoint, way_along
 from explore_bt.units import Area, Duration, Length
@@ -31,6 +32,8 @@ class DriveTo(Leaf):
     (``look_again``; then also where the way is cut and the one around is 5 m longer). A goal that promises
     less than ``until_seen`` is a scrap: once begun it is driven to, or until nothing of it is left, for
     deciding anew would only trade it for the next scrap.
+    Someone in the way is waited for, without a new plan, for what is free now is not free in a second; after
+    a while (``give_way``) that is a FAILURE too, ``someone_in_the_way``: see ``make_way``.
     FAILURE when no path is left; the planner's typed reason goes to ``failure``.
     """
 
@@ -55,6 +58,9 @@ class DriveTo(Leaf):
         Duration, default=2.0, ge=0.0, doc="how long the safety gate may hold the robot before a new plan"
     )
     replans: Input[int] = Input(int, default=3, ge=0, doc="new plans after being held, before giving up")
+    give_way: Input[float] = Input(
+        Duration, default=3.0, ge=0.0, doc="how long to wait for someone in the way before the tree is asked"
+    )
     failure: Output[str] = Output(str, default=Key("failure"), doc="code of the reason for a failure")
     reached: Output[Waypoint] = Output(
         Waypoint, default=Key("reached"), doc="the goal; where it was seen from, if the drive stopped early"
@@ -68,11 +74,13 @@ class DriveTo(Leaf):
         self._checked_revision = -1
         self._begun_m = self.robot.distance_m
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
+        self._next_plan_s = 0.0
+        self._without_path_s: float | None = None
 
     def update(self) -> Status:
         """Plan when there is no path, else watch the one being followed."""
         if self._path is None:
-            return self._plan()
+            return self._plan() if self.robot.now_s() >= self._next_plan_s else Status.RUNNING
         self._note_passed()
         if self._is_seen():
             return self._stop_here("seen from here")
@@ -82,6 +90,8 @@ class DriveTo(Leaf):
             self.say("arrived")
             return Status.SUCCESS
         if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:
+            if someone_is_in_the_way(self.robot):
+                return self._wait_for_someone(self.robot.pilot.blocked_s)
             return self._plan_after_hold(output.reason)
         if self._is_cut():
             return self._plan_around()
@@ -104,14 +114,35 @@ class DriveTo(Leaf):
         try:
             self._path = self.robot.plan(goal.pose, self._via)
         except (PlanningFailure, ComponentFailure) as refusal:
+            if self.robot.moving and not isinstance(refusal, ComponentFailure):
+                return self._wait_without_path()
             self.failure = refusal.code if isinstance(refusal, PlanningFailure) else "planner_failed"
             self.say(f"no path: {refusal}")
             return Status.FAILURE
+        self._without_path_s = None
         self.robot.pilot.follow(self._path)
         x, y = goal.position
         self.say(
             f"to ({x:.1f}, {y:.1f}): {self._path.length_m:.1f} m, closest {self._path.min_clearance_m:.2f} m"
         )
+        return Status.RUNNING
+
+    def _wait_without_path(self) -> Status:
+        """Whoever walks about may stand in the only way: ask again in a second."""
+        now_s = self.robot.now_s()
+        if self._without_path_s is None:
+            self._without_path_s = now_s
+            self.robot.pilot.hold()
+        self._next_plan_s = now_s + _LOOK_PERIOD_S
+        self._path = None
+        return self._wait_for_someone(now_s - self._without_path_s)
+
+    def _wait_for_someone(self, waited_s: float) -> Status:
+        if waited_s > self.give_way:
+            self.failure = SOMEONE
+            self.say(f"someone has been in the way for {waited_s:.0f} s")
+            return Status.FAILURE
+        self.say("waiting for someone to pass")
         return Status.RUNNING
 
     def _note_passed(self) -> None:
@@ -137,7 +168,7 @@ class DriveTo(Leaf):
             self.failure = "held"
             self.say(f"gave up after {self._held} holds: {reason or self.robot.pilot.gate_reason}")
             return Status.FAILURE
-        if self._held > 1 and self.robot.pilot.is_blocked_by_obstacle:
+        if self._held > 1 and self.robot.pilot.held_by is HeldBy.OBSTACLE:
             self.robot.avoid(self._place_ahead())
         return self._plan()
 

@@ -41,6 +41,7 @@ from explore_bt.exploration.half_plane import HalfPlane, HalfPlaneHistory
 from explore_bt.exploration.outlook import Outlooks
 from explore_bt.exploration.passage import passage_field
 from explore_bt.exploration.reach import Reach
+from explore_bt.exploration.refuge import find_refuge, gap_to_courses_m
 from explore_bt.exploration.remains import sentences, what_remains
 from explore_bt.exploration.retrace import way_back
 from explore_bt.exploration.revisit import is_allowed, repeated_visit
@@ -72,9 +73,11 @@ __all__ = [
     "clearance_field",
     "find_free_sectors",
     "find_frontiers",
+    "find_refuge",
     "first_run",
     "frontier_mask",
     "gain_many",
+    "gap_to_courses_m",
     "is_allowed",
     "nearest_reaching_cell",
     "next_waypoint",

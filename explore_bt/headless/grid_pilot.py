@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.interfaces import ControlOutput, ControlStatus
+from explore_bt.interfaces import ControlOutput, ControlStatus, HeldBy
 from explore_bt.types import Path, Pose2, Twist2, wrap_angle
 
 __all__ = ["GridPilot"]
@@ -28,7 +28,7 @@ class GridPilot:
 
     blocked_s = 0.0
     gate_reason = ""
-    is_blocked_by_obstacle = True
+    held_by = HeldBy.OBSTACLE
 
     def __init__(self) -> None:
         self.path: Path | None = None

@@ -12,7 +12,7 @@ from explore_bt.headless.grid_pilot import GridPilot
 from explore_bt.interfaces import MapMemory, MapView, Planner
 from explore_bt.runtime.legs import plan_through
 from explore_bt.runtime.tight_places import TightPlaces
-from explore_bt.types import Budget, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
+from explore_bt.types import Budget, Estimate, MovingObstacle, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
 
 __all__ = ["GridRobot"]
 
@@ -28,6 +28,7 @@ class GridRobot:
     """
 
     stop_requested = False
+    moving: tuple[MovingObstacle, ...] = ()
     least_margin_m = _GRAZE_M
 
     def __init__(self, name: str, planner: Planner, footprint_radius_m: float, lidar_range_m: float) -> None:

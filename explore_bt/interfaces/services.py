@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Protocol
@@ -12,9 +13,27 @@ from numpy.typing import NDArray
 from explore_bt.exploration.clearance import Clearances
 from explore_bt.exploration.ground import Ground, GroundMemory
 from explore_bt.interfaces.controller import ControlOutput
-from explore_bt.types import Budget, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
+from explore_bt.types import (
+    Budget,
+    Estimate,
+    MovingObstacle,
+    OccupancyGrid,
+    Path,
+    Pose2,
+    Scan2D,
+    Trajectory,
+)
 
-__all__ = ["MapMemory", "MapView", "Pilot", "RobotServices"]
+__all__ = ["HeldBy", "MapMemory", "MapView", "Pilot", "RobotServices"]
+
+
+class HeldBy(enum.StrEnum):
+    """What keeps the safety gate from passing the controller's commands on."""
+
+    NOTHING = "nothing"
+    OBSTACLE = "an obstacle"
+    SOMEONE = "someone who moves"
+    SENSES = "senses that fail"
 
 
 class MapMemory:
@@ -65,8 +84,8 @@ class Pilot(Protocol):
         """Why the robot is being braked for; empty while commands pass."""
 
     @property
-    def is_blocked_by_obstacle(self) -> bool:
-        """Whether what brakes is the gate's look at the way ahead, not a lost SLAM or a stale scan."""
+    def held_by(self) -> HeldBy:
+        """What the robot is being braked for."""
 
 
 class RobotServices(Protocol):
@@ -99,6 +118,10 @@ class RobotServices(Protocol):
     @property
     def stop_requested(self) -> bool:
         """The paper's ``stop_exploration``."""
+
+    @property
+    def moving(self) -> tuple[MovingObstacle, ...]:
+        """What moves around the robot, as the newest scan tells."""
 
     @property
     def distance_m(self) -> float:

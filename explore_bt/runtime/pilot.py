@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, Surroundings
+from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, HeldBy, Surroundings
 from explore_bt.runtime.pose_predictor import PosePredictor
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.types import Estimate, Health, MotionState, Path, Scan2D, Twist2
@@ -33,7 +33,7 @@ class Pilot:
         self.gate_reason = ""
         self._output = ControlOutput(Twist2(), ControlStatus.IDLE)
         self._blocked_since_s: float | None = None
-        self._blocked_by_obstacle = False
+        self.held_by = HeldBy.NOTHING
         self._now_s = 0.0
         self._shown: Estimate | None = None
         self._unseen: Surroundings | None = None
@@ -47,11 +47,6 @@ class Pilot:
     def blocked_s(self) -> float:
         """For how long the gate has been braking without a break, seconds."""
         return 0.0 if self._blocked_since_s is None else self._now_s - self._blocked_since_s
-
-    @property
-    def is_blocked_by_obstacle(self) -> bool:
-        """Whether what brakes is the gate's look at the way ahead, not a lost SLAM or a stale scan."""
-        return self._blocked_by_obstacle
 
     @property
     def is_at_rest(self) -> bool:
@@ -73,14 +68,14 @@ class Pilot:
 
     def see(self, surroundings: Surroundings, estimate: Estimate) -> None:
         """Show what is around the robot to controller and gate."""
-        if self._has_jumped(estimate):
+        if self.has_jumped(estimate):
             self._gate.forget_scans()
         self._shown = estimate
         self._gate.see(surroundings, estimate.T_map_base)
         self._unseen = surroundings
 
-    def _has_jumped(self, estimate: Estimate) -> bool:
-        """Whether the pose is elsewhere than the last one and the commands since then lead to."""
+    def has_jumped(self, estimate: Estimate) -> bool:
+        """Whether the pose is elsewhere than the one shown last and the commands since then lead to."""
         if self._shown is None:
             return False
         expected = self._predictor.predict(self._shown, estimate.stamp_s).T_map_base
@@ -102,11 +97,11 @@ class Pilot:
         fault = _unfit_to_drive(estimate, scan, now_s)
         if fault:
             following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
-            self._blocked_by_obstacle = False
+            self.held_by = HeldBy.SENSES
         else:
-            decision = self._gate.decide(self._output.twist, now.T_map_base, self.motion, dt_s)
+            decision = self._gate.decide(self._output.twist, now.T_map_base, self.motion, dt_s, now_s)
             following, self.gate_reason = decision.motion, decision.reason
-            self._blocked_by_obstacle = bool(decision.reason)
+            self.held_by = decision.held_by
         if not self.gate_reason:
             self._blocked_since_s = None
         elif self._blocked_since_s is None:
@@ -116,7 +111,7 @@ class Pilot:
     def brake(self, reason: str, now_s: float, dt_s: float) -> None:
         """One control period of a controlled stop, without asking the controller."""
         self._now_s = now_s
-        self.gate_reason = reason
+        self.gate_reason, self.held_by = reason, HeldBy.SENSES
         self._send(self._gate.brake(self.motion, dt_s), now_s)
 
     def _send(self, following: MotionState, now_s: float) -> None:

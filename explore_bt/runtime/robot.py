@@ -28,6 +28,7 @@ from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.legs import plan_through
+from explore_bt.runtime.moving_things import MovingThings
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.safety_gate import SafetyGate
@@ -43,6 +44,7 @@ from explore_bt.types import (
     Estimate,
     Health,
     Measurement,
+    MovingObstacle,
     OccupancyGrid,
     Path,
     Pose2,
@@ -91,6 +93,8 @@ class Robot:
         self._logged: set[tuple[str, str]] = set()
         self._health_news = HealthNews()
         self._gate_reason = ""
+        self._things = MovingThings()
+        self.moving: tuple[MovingObstacle, ...] = ()
 
     def setup(self) -> None:
         """Open the driver, warm everything up.
@@ -329,15 +333,26 @@ class Robot:
 
     def _show_gate(self) -> None:
         assert self._scan is not None
-        surroundings = Surroundings(self._scan.stamp_s, self._seen_points(), self.slam.grid())
-        self.pilot.see(surroundings, self.slam.estimate())
+        estimate = self._estimate_of_scan(self._scan)
+        if self.pilot.has_jumped(estimate):
+            self._things.forget()
+        self.moving = self._things.see(self._scan, estimate.T_map_base, self.pilot.motion.twist)
+        around = Surroundings(self._scan.stamp_s, self._seen_points(), self.slam.grid(), self.moving)
+        self.pilot.see(around, estimate)
 
     def _seen_points(self) -> NDArray[np.float64]:
         """(N, 2) metres, ``map`` frame: the newest scan's returns, less noisy close by."""
         if self._scan is None:
             return np.empty((0, 2))
-        points = self.slam.estimate().T_map_base.apply(steadied(self._scan).points())
+        points = self._estimate_of_scan(self._scan).T_map_base.apply(steadied(self._scan).points())
         return np.ascontiguousarray(points)
+
+    def _estimate_of_scan(self, scan: Scan2D) -> Estimate:
+        """The newest, carried forward to the scan where SLAM lags behind."""
+        estimate = self.slam.estimate()
+        if estimate.stamp_s >= scan.stamp_s:
+            return estimate
+        return self.pilot.predict(estimate, scan.stamp_s)
 
     def _read(self) -> Sequence[Measurement]:
         try:

@@ -2,8 +2,9 @@
 
 Before each command the gate rolls the robot forward: the control period under the wanted twist, then
 the jerk-limited brake to rest, turning included. Every place on that way must be free for the footprint,
-in the last scans and in the newest map, where unknown counts as obstacle. If one is not, the brake that
-was checked the last time goes out instead. So by induction the robot can always stop in free space.
+in the last scans and in the newest map, where unknown counts as obstacle. Of things that move it must stay
+clear until it is at rest, whichever way they walk. If a place is not free, the brake that was checked the
+last time goes out instead. So by induction the robot can always stop in free space, before anyone is there.
 """
 
 from __future__ import annotations
@@ -16,10 +17,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from explore_bt.interfaces import Surroundings
-from explore_bt.runtime.brake import brake_duration_s, brake_velocity
+from explore_bt.interfaces import HeldBy, Surroundings
 from explore_bt.runtime.clearance_window import ClearanceWindow
-from explore_bt.types import MotionLimits, MotionState, Pose2, Twist2
+from explore_bt.runtime.way_to_rest import WayToRest, brake_velocities, way_to_rest
+from explore_bt.types import MotionLimits, MotionState, MovingObstacle, Pose2, Twist2
 
 __all__ = ["GateDecision", "SafetyGate"]
 
@@ -42,7 +43,11 @@ RESTART_WAY_M = 0.1
 ONWARD_STEP_M = 0.02
 MOST_BEND = 4.0
 """1/m: a robot that bends more sharply is turning on the spot."""
-SAMPLE_S = 0.05
+WALKING_MPS = 1.6
+"""How fast a moving thing may come, from any side: a brisk walk."""
+AT_REST_MPS = 0.05
+"""Below this the robot counts as standing: what walks into it then was not run into."""
+MOVING_MARGIN_M = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +55,8 @@ class GateDecision:
     """The motion to send, and why it is not the one that was asked for (empty if it is)."""
 
     motion: MotionState
-    reason: str
+    reason: str = ""
+    held_by: HeldBy = HeldBy.NOTHING
 
 
 @dataclass(slots=True)
@@ -70,6 +76,7 @@ class SafetyGate:
         self._brake = _Brake(MotionState())
         self._window = ClearanceWindow(LOOK_AHEAD_M)
         self._is_held = False
+        self._moving: tuple[MovingObstacle, ...] = ()
         self._scans: deque[NDArray[np.float64]] = deque(maxlen=max(count for count, _ in VOTES))
 
     def see(self, surroundings: Surroundings, near: Pose2) -> None:
@@ -80,6 +87,7 @@ class SafetyGate:
             near: where the robot is; the map is looked at around it.
         """
         points = surroundings.points
+        self._moving = surroundings.moving
         is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
         self._scans.append(np.ascontiguousarray(points[is_near]))
         self._window.cut(surroundings.grid, near, points)
@@ -88,7 +96,9 @@ class SafetyGate:
         """The scans seen so far no longer lie where the pose says: a loop closure moved it."""
         self._scans.clear()
 
-    def decide(self, wanted: Twist2, pose: Pose2, motion: MotionState, dt_s: float) -> GateDecision:
+    def decide(
+        self, wanted: Twist2, pose: Pose2, motion: MotionState, dt_s: float, now_s: float = 0.0
+    ) -> GateDecision:
         """Pass ``wanted`` on, or go on along the brake that was checked last.
 
         Args:
@@ -96,13 +106,17 @@ class SafetyGate:
             pose: the robot's pose now, ``map`` frame.
             motion: what was sent last.
             dt_s: the control period.
+            now_s: the time, on the clock of the scans' stamps.
         """
         following = _state_after(wanted, motion, dt_s)
-        fault = self._fault_on_the_way(following, pose, motion, dt_s)
+        way = way_to_rest(following, pose, motion, self._limits, dt_s)
+        held_by, fault = HeldBy.OBSTACLE, self._fault_on_the_way(way, following)
         if not fault:
-            self._brake = _Brake(following)
-            return GateDecision(following, "")
-        return GateDecision(self._next_of_brake(motion, dt_s), fault)
+            held_by, fault = HeldBy.SOMEONE, self._fault_by_moving(way, now_s)
+        if fault:
+            return GateDecision(self._next_of_brake(motion, dt_s), fault, held_by)
+        self._brake = _Brake(following)
+        return GateDecision(following)
 
     def brake(self, motion: MotionState, dt_s: float) -> MotionState:
         """The next state of a controlled stop, whatever the controller wants."""
@@ -112,16 +126,28 @@ class SafetyGate:
         brake = self._brake
         brake.elapsed_s += dt_s
         times = np.array([brake.elapsed_s])
-        linear, angular = _brake_velocities(brake.start, self._limits, times)
+        linear, angular = brake_velocities(brake.start, self._limits, times)
         return _state_after(Twist2(float(linear[0]), float(angular[0])), motion, dt_s)
 
-    def _fault_on_the_way(self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float) -> str:
-        ahead = self._way_to_rest(following, pose, motion, dt_s)
+    def _fault_on_the_way(self, way: WayToRest, following: MotionState) -> str:
+        ahead = way.poses
         if not np.any(ahead[:, :2] - ahead[0, :2]):
             return ""  # a disc turning on the spot touches nothing that it does not touch already
         on_grid = self._window.clearance_m(ahead[:, :2])
         in_map = _shortfall(on_grid, self._radius_m, "obstacle or unknown space in the map")
         return in_map or self._fault_in_scans(ahead, following)
+
+    def _fault_by_moving(self, way: WayToRest, now_s: float) -> str:
+        is_fast = way.speeds_mps > AT_REST_MPS
+        drives = is_fast | np.concatenate(([False], is_fast[:-1]))  # until the first sample at rest
+        for thing in self._moving:
+            away_m = np.hypot(*(way.poses[drives, :2] - thing.xy).T) - thing.radius_m
+            walked_m = WALKING_MPS * (now_s + way.times_s[drives] - thing.stamp_s)
+            spare_m = away_m - walked_m - self._radius_m - MOVING_MARGIN_M
+            if spare_m.size and spare_m.min() < 0.0:
+                here_m = math.dist(thing.xy, way.poses[0, :2].tolist()) - thing.radius_m - self._radius_m
+                return f"someone {here_m:.1f} m away could be met before the robot stands"
+        return ""
 
     def _fault_in_scans(self, ahead: NDArray[np.float64], following: MotionState) -> str:
         if not self._scans:
@@ -143,38 +169,6 @@ class SafetyGate:
             if fault := _shortfall(room_m, needed_m + margin_m, obstacle, gain_m if count > 1 else 0.0):
                 return fault
         return ""
-
-    def _way_to_rest(
-        self, following: MotionState, pose: Pose2, motion: MotionState, dt_s: float
-    ) -> NDArray[np.float64]:
-        """(N, 3) float64 x, y, yaw from here to rest; the first is here."""
-        limits = self._limits
-        duration = max(
-            brake_duration_s(
-                following.twist.linear_mps,
-                following.linear_acceleration_mps2,
-                limits.acceleration_mps2,
-                limits.jerk_mps3,
-            ),
-            brake_duration_s(
-                following.twist.angular_rps,
-                following.angular_acceleration_rps2,
-                limits.turn_acceleration_rps2,
-                limits.turn_jerk_rps3,
-            ),
-        )
-        times = np.arange(0.0, duration + SAMPLE_S, SAMPLE_S)
-        linear, angular = _brake_velocities(following, limits, times)
-        return _roll_forward(
-            pose.x,
-            pose.y,
-            pose.yaw_rad,
-            motion.twist.linear_mps,
-            motion.twist.angular_rps,
-            linear,
-            angular,
-            dt_s,
-        )
 
 
 def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str, gain_m: float = 0.0) -> str:
@@ -221,26 +215,6 @@ def _state_after(twist: Twist2, motion: MotionState, dt_s: float) -> MotionState
     )
 
 
-def _brake_velocities(
-    start: MotionState, limits: MotionLimits, times_s: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    linear = brake_velocity(
-        start.twist.linear_mps,
-        start.linear_acceleration_mps2,
-        limits.acceleration_mps2,
-        limits.jerk_mps3,
-        times_s,
-    )
-    angular = brake_velocity(
-        start.twist.angular_rps,
-        start.angular_acceleration_rps2,
-        limits.turn_acceleration_rps2,
-        limits.turn_jerk_rps3,
-        times_s,
-    )
-    return linear, angular
-
-
 @njit(cache=True)
 def _nearest_point_m(positions: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
     out = np.full(positions.shape[0], np.inf)
@@ -250,30 +224,4 @@ def _nearest_point_m(positions: NDArray[np.float64], points: NDArray[np.float64]
             dy = positions[i, 1] - points[k, 1]
             out[i] = min(out[i], dx * dx + dy * dy)
         out[i] = np.sqrt(out[i])
-    return out
-
-
-@njit(cache=True)
-def _roll_forward(
-    x: float,
-    y: float,
-    yaw: float,
-    v: float,
-    w: float,
-    linear: NDArray[np.float64],
-    angular: NDArray[np.float64],
-    dt_s: float,
-) -> NDArray[np.float64]:
-    """Poses (x, y, yaw) here, after the period ``dt_s``, then every ``SAMPLE_S`` of the brake."""
-    out = np.empty((linear.shape[0] + 1, 3))
-    out[0, 0], out[0, 1], out[0, 2] = x, y, yaw
-    step = dt_s
-    for i in range(linear.shape[0]):
-        mean_v, mean_w = 0.5 * (v + linear[i]), 0.5 * (w + angular[i])
-        x += mean_v * step * np.cos(yaw + 0.5 * mean_w * step)
-        y += mean_v * step * np.sin(yaw + 0.5 * mean_w * step)
-        yaw += mean_w * step
-        v, w = linear[i], angular[i]
-        out[i + 1, 0], out[i + 1, 1], out[i + 1, 2] = x, y, yaw
-        step = SAMPLE_S
     return out

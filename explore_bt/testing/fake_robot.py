@@ -8,8 +8,19 @@ from itertools import pairwise
 import numpy as np
 
 from explore_bt.errors import PlanningFailure
-from explore_bt.interfaces import ControlOutput, ControlStatus, MapView
-from explore_bt.types import FREE, Budget, Estimate, OccupancyGrid, Path, Pose2, Scan2D, Trajectory, Twist2
+from explore_bt.interfaces import ControlOutput, ControlStatus, HeldBy, MapView
+from explore_bt.types import (
+    FREE,
+    Budget,
+    Estimate,
+    MovingObstacle,
+    OccupancyGrid,
+    Path,
+    Pose2,
+    Scan2D,
+    Trajectory,
+    Twist2,
+)
 
 __all__ = ["FakePilot", "FakeRobot", "full_circle_scan", "open_floor"]
 
@@ -22,7 +33,7 @@ class FakePilot:
         self.holds = 0
         self.output = ControlOutput(Twist2(), ControlStatus.IDLE)
         self.blocked_s = 0.0
-        self.is_blocked_by_obstacle = True
+        self.held_by = HeldBy.OBSTACLE
         self.gate_reason = ""
 
     def follow(self, path: Path) -> None:
@@ -59,6 +70,7 @@ class FakeRobot:
         self.driven: list[Pose2] = []
         self.avoided: list[tuple[float, float]] = []
         self.limited: tuple[Budget, ...] = ()
+        self.moving: tuple[MovingObstacle, ...] = ()
 
     def now_s(self) -> float:
         """``time_s``."""

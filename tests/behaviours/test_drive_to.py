@@ -3,10 +3,10 @@ import pytest
 
 from explore_bt.behaviours import DriveTo
 from explore_bt.errors import NoPath
-from explore_bt.interfaces import ControlStatus
+from explore_bt.interfaces import ControlStatus, HeldBy
 from explore_bt.testing.fake_robot import FakeRobot, open_floor
 from explore_bt.tree import Blackboard, Status
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Path, Pose2, Waypoint
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, MovingObstacle, OccupancyGrid, Path, Pose2, Waypoint
 
 AHEAD = Waypoint(Pose2(3.0, 0.0, 0.0))
 
@@ -51,6 +51,35 @@ def test_a_robot_held_by_the_gate_plans_anew_and_gives_up_in_the_end() -> None:
     assert len(robot.pilot.followed) == 3
     assert leaf.blackboard["failure"] == "held"
     assert len(robot.avoided) == 1  # the second hold closed the place ahead
+
+
+SOMEONE_NEAR = MovingObstacle(1, (1.0, 0.0), (0.0, 0.5), 0.25, 0.0)
+
+
+def test_someone_in_the_way_is_waited_for_and_then_left_to_the_tree() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot, patience=2.0, give_way=4.0)
+    robot.pilot.held_by, robot.moving = HeldBy.SOMEONE, (SOMEONE_NEAR,)
+    robot.pilot.blocked_s = 3.0
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING
+    robot.pilot.blocked_s = 4.1
+    leaf.tick_once()
+    assert leaf.status is Status.FAILURE
+    assert leaf.blackboard["failure"] == "someone_in_the_way"
+    assert len(robot.pilot.followed) == 1
+    assert not robot.avoided  # a person is no tight place
+
+
+def test_a_way_that_someone_stands_in_is_asked_for_again() -> None:
+    robot = FakeRobot(open_floor())
+    robot.refusal, robot.moving = NoPath("no passage wide enough"), (SOMEONE_NEAR,)
+    leaf = drive(robot)
+    assert leaf.status is Status.RUNNING
+    robot.refusal, robot.moving, robot.time_s = None, (), 1.5
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING
+    assert len(robot.pilot.followed) == 1
 
 
 def test_an_obstacle_that_appears_on_the_way_ahead_brings_a_new_plan() -> None:

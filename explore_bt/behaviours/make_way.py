@@ -1,0 +1,128 @@
+"""Leaf: step aside for someone who comes, and wait until the way is free."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from explore_bt.errors import ComponentFailure, PlanningFailure
+from explore_bt.exploration import find_refuge, gap_to_courses_m
+from explore_bt.interfaces import ControlStatus, HeldBy, RobotServices
+from explore_bt.tree import Input, Key, Leaf, Status
+from explore_bt.types import Pose2, Waypoint
+from explore_bt.units import Duration, Length
+
+__all__ = ["SOMEONE", "MakeWay", "someone_is_in_the_way"]
+
+SOMEONE = "someone_in_the_way"
+"""Code of the failure of a drive that someone was in the way of."""
+_MARGIN_M = 0.05
+_CLOSE_M = 1.0
+"""Someone so near is why a scan holds the robot, not the furniture."""
+_APART_M = 0.3
+_SAME_M = 0.3
+
+
+def someone_is_in_the_way(robot: RobotServices) -> bool:
+    """Whether the robot does not get on because someone is about."""
+    if robot.pilot.held_by is HeldBy.SOMEONE:
+        return True
+    here, now_s = robot.estimate().T_map_base, robot.now_s()
+    near_m = robot.footprint_radius_m + _CLOSE_M
+    return any(thing.least_distance_m(here, now_s, 0.0) < near_m for thing in robot.moving)
+
+
+class MakeWay(Leaf):
+    """Drives to a near place beside the courses of those who come, a side branch of a corridor, and waits.
+
+    Where no place is better than the one it stands on it waits there.
+    SUCCESS as soon as nobody is near or comes nearer, or after ``patience``. FAILURE if nobody was in the
+    way, or the same goal has been stood aside from ``chances`` times: it may be the building after all.
+    """
+
+    type_key = "make_way"
+
+    at_most: Input[float] = Input(Length, default=3.0, ge=0.1, doc="no farther aside than this")
+    clear: Input[float] = Input(
+        Length, default=2.5, ge=0.0, doc="the way is free while nobody nearer than this comes on"
+    )
+    goal: Input[Waypoint] = Input(Waypoint, default=Key("goal"), doc="the goal that was not come to")
+    chances: Input[int] = Input(int, default=5, ge=1, doc="how often for the same goal in a row")
+    patience: Input[float] = Input(Duration, default=10.0, ge=0.0, doc="how long to wait at most")
+
+    _given: tuple[tuple[float, float], int] = ((math.nan, math.nan), 0)
+
+    def initialise(self) -> None:
+        """Look for a place."""
+        self._until_s = self.robot.now_s() + self.patience
+        self._refusal = self._why_not()
+        self._is_driving = not self._refusal and self._step_aside()
+
+    def update(self) -> Status:
+        """Until the way is free."""
+        if self._refusal:
+            self.say(self._refusal)
+            return Status.FAILURE
+        if self._is_driving and self._has_come():
+            self._is_driving = False
+            self.robot.pilot.hold()
+        if self.robot.now_s() >= self._until_s:
+            self.say(f"still not alone after {self.patience:.0f} s; on")
+            return Status.SUCCESS
+        if not self._is_driving and self._is_free():
+            self.say("the way is free")
+            return Status.SUCCESS
+        return Status.RUNNING
+
+    def terminate(self, new_status: Status) -> None:  # noqa: ARG002  # the same however it ended
+        """Whatever comes next begins from rest."""
+        self.robot.pilot.hold()
+
+    def _why_not(self) -> str:
+        if not someone_is_in_the_way(self.robot):
+            return "nobody is in the way"
+        place, count = self._given
+        count = count + 1 if math.dist(place, self.goal.position) < _SAME_M else 1
+        self._given = (self.goal.position, count)
+        return f"has stood aside {self.chances} times for this goal" if count > self.chances else ""
+
+    def _step_aside(self) -> bool:
+        view, robot = self.robot.view(), self.robot
+        place = find_refuge(
+            view.grid,
+            view.clearance_m,
+            robot.estimate().T_map_base.xy,
+            robot.moving,
+            robot.footprint_radius_m + _MARGIN_M,
+            most_way_m=self.at_most,
+        )
+        if place is None:
+            self.say("waiting here: no place is farther out of the way")
+            return False
+        here = robot.estimate().T_map_base
+        yaw = math.atan2(place[1] - here.y, place[0] - here.x)
+        try:
+            path = robot.plan(Pose2(*place, yaw))
+        except (PlanningFailure, ComponentFailure) as refusal:
+            self.say(f"waiting here: no way aside, {refusal}")
+            return False
+        robot.pilot.follow(path)
+        self.say(f"{path.length_m:.1f} m aside, to ({place[0]:.1f}, {place[1]:.1f})")
+        return True
+
+    def _has_come(self) -> bool:
+        """There, or held on the way."""
+        return self.robot.pilot.output.status in (ControlStatus.ARRIVED, ControlStatus.STUCK)
+
+    def _is_free(self) -> bool:
+        here, now_s = self.robot.estimate().T_map_base, self.robot.now_s()
+        near_m = self.robot.footprint_radius_m + self.clear
+        near = [thing for thing in self.robot.moving if thing.least_distance_m(here, now_s, 0.0) < near_m]
+        gap_m = float(gap_to_courses_m(np.array([here.xy]), near)[0])
+        is_leaving = all(_goes_away(thing.xy, thing.velocity_mps, here) for thing in near)
+        return is_leaving and gap_m > self.robot.footprint_radius_m + _APART_M
+
+
+def _goes_away(xy: tuple[float, float], velocity: tuple[float, float], here: Pose2) -> bool:
+    return (xy[0] - here.x) * velocity[0] + (xy[1] - here.y) * velocity[1] > 0.0

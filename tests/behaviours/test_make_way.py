@@ -1,0 +1,82 @@
+import numpy as np
+import pytest
+
+from explore_bt.behaviours import MakeWay
+from explore_bt.errors import NoPath
+from explore_bt.interfaces import ControlStatus, HeldBy
+from explore_bt.testing.fake_robot import FakeRobot, open_floor
+from explore_bt.tree import Blackboard, Status
+from explore_bt.types import MovingObstacle, Pose2, Waypoint
+
+COMING = MovingObstacle(1, (2.5, 0.0), (-1.0, 0.0), 0.25, 0.0)
+GONE = MovingObstacle(1, (-1.2, 0.0), (-1.0, 0.0), 0.25, 0.0)
+
+
+@pytest.fixture
+def robot() -> FakeRobot:
+    robot = FakeRobot(open_floor())
+    robot.pilot.held_by, robot.moving = HeldBy.SOMEONE, (COMING,)
+    return robot
+
+
+def make_way(robot: FakeRobot, **bindings: object) -> MakeWay:
+    board = Blackboard()
+    board.write("goal", Waypoint(Pose2(3.0, 0.0, 0.0)))
+    leaf = MakeWay("make way", robot, board, bindings)
+    leaf.tick_once()
+    return leaf
+
+
+def test_it_steps_off_the_course_waits_and_goes_on(robot: FakeRobot) -> None:
+    leaf = make_way(robot)
+    assert leaf.status is Status.RUNNING
+    robot.pose = robot.pilot.followed[0].goal
+    assert abs(robot.pose.y) > 0.5
+    robot.pilot.report(ControlStatus.ARRIVED)
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING  # there, but still someone comes
+    robot.moving = (GONE,)
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+
+
+def test_with_nobody_in_the_way_it_is_no_remedy(robot: FakeRobot) -> None:
+    robot.moving, robot.pilot.held_by = (), HeldBy.OBSTACLE
+    leaf = make_way(robot)
+    assert leaf.status is Status.FAILURE
+    assert leaf.feedback_message == "nobody is in the way"
+
+
+def test_it_does_not_wait_for_ever(robot: FakeRobot) -> None:
+    leaf = make_way(robot, patience=5.0)
+    robot.time_s = 5.1
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+
+
+def test_without_a_way_aside_it_waits_where_it_is(robot: FakeRobot) -> None:
+    robot.refusal = NoPath("no passage wide enough")
+    leaf = make_way(robot)
+    assert leaf.status is Status.RUNNING
+    assert not robot.pilot.followed
+    robot.moving = ()
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+
+
+def test_for_one_goal_it_stands_aside_so_often_and_no_more(robot: FakeRobot) -> None:
+    leaf = make_way(robot, chances=2, patience=0.0)
+    for expected in (Status.SUCCESS, Status.FAILURE):
+        leaf.tick_once()
+        assert leaf.status is expected
+    leaf.blackboard.write("goal", Waypoint(Pose2(-3.0, 2.0, 0.0)))
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+
+
+def test_cut_off_it_leaves_a_robot_that_comes_to_rest(robot: FakeRobot) -> None:
+    leaf = make_way(robot)
+    before = robot.pilot.holds
+    leaf.stop(Status.INVALID)
+    assert robot.pilot.holds == before + 1
+    assert np.isfinite(robot.pilot.followed[0].poses).all()

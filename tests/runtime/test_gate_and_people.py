@@ -1,0 +1,125 @@
+"""People who walk straight at the robot, whatever it does: it may be touched, it never runs into anyone."""
+
+import math
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from explore_bt.interfaces import HeldBy, Surroundings
+from explore_bt.runtime.safety_gate import AT_REST_MPS, SafetyGate
+from explore_bt.testing.fake_robot import open_floor
+from explore_bt.types import MotionLimits, MotionState, MovingObstacle, Pose2, Twist2
+
+LIMITS = MotionLimits()
+RADIUS, BODY = 0.25, 0.25
+DT, SCAN_EVERY = 0.05, 2
+FLOOR = open_floor(30.0, 0.1)
+
+
+def towards(wanted: float, now: float, a: float, a_max: float, j_max: float) -> float:
+    change = np.clip((wanted - now) / DT, a - j_max * DT, a + j_max * DT)
+    return now + float(np.clip(change, -a_max, a_max)) * DT
+
+
+class Chase:
+    """A robot that wants to drive straight on, and people who walk up to it at a constant speed."""
+
+    def __init__(self, people: np.ndarray, speed_mps: float) -> None:
+        self.gate, self.pose, self.motion = SafetyGate(RADIUS, LIMITS), Pose2.identity(), MotionState()
+        self.people, self.speed_mps = people.astype(float), speed_mps
+        self.time_s, self.steps = 0.0, 0
+        self.held_by = HeldBy.NOTHING
+        self.fastest_touch_mps = 0.0
+
+    def step(self, wanted: Twist2) -> None:
+        if self.steps % SCAN_EVERY == 0:
+            moving = tuple(
+                MovingObstacle(k, (x, y), (0.0, 0.0), BODY, self.time_s)
+                for k, (x, y) in enumerate(self.people.tolist())
+            )
+            self.gate.see(Surroundings(self.time_s, np.empty((0, 2)), FLOOR, moving), self.pose)
+        v, w = self.motion.twist.linear_mps, self.motion.twist.angular_rps
+        wish = Twist2(
+            towards(wanted.linear_mps, v, self.motion.linear_acceleration_mps2, 0.5, 2.0),
+            towards(wanted.angular_rps, w, self.motion.angular_acceleration_rps2, 2.0, 8.0),
+        )
+        decision = self.gate.decide(wish, self.pose, self.motion, DT, self.time_s)
+        self.held_by = decision.held_by
+        self._move(decision.motion)
+        self.motion = decision.motion
+        self.time_s += DT
+        self.steps += 1
+
+    def _move(self, following: MotionState) -> None:
+        before, parts = self.motion.twist, 5
+        for k in range(parts):
+            share = (k + 0.5) / parts
+            v = before.linear_mps + share * (following.twist.linear_mps - before.linear_mps)
+            w = before.angular_rps + share * (following.twist.angular_rps - before.angular_rps)
+            yaw = self.pose.yaw_rad + 0.5 * w * DT / parts
+            step = v * DT / parts
+            self.pose = Pose2(
+                self.pose.x + step * math.cos(yaw),
+                self.pose.y + step * math.sin(yaw),
+                self.pose.yaw_rad + w * DT / parts,
+            )
+            off = np.array(self.pose.xy) - self.people
+            away = np.hypot(*off.T)[:, None]
+            self.people += off / np.maximum(away, 1e-9) * min(self.speed_mps * DT / parts, 1.0)
+            if float(away.min()) < RADIUS + BODY:
+                self.fastest_touch_mps = max(self.fastest_touch_mps, abs(v))
+
+
+@given(
+    st.lists(st.tuples(st.floats(-math.pi, math.pi), st.floats(1.0, 6.0)), min_size=1, max_size=4),
+    st.floats(0.3, 1.6),
+    st.floats(-0.3, 0.5),
+    st.floats(-1.2, 1.2),
+)
+@settings(deadline=None, max_examples=80)
+def test_whoever_comes_the_robot_stands_before_they_meet(
+    places: list[tuple[float, float]], speed: float, v: float, w: float
+) -> None:
+    people = np.array([(away * math.cos(at), away * math.sin(at)) for at, away in places])
+    chase = Chase(people, speed)
+    for _ in range(100):
+        chase.step(Twist2(v, w))
+    assert chase.fastest_touch_mps <= AT_REST_MPS
+
+
+def test_someone_far_off_does_not_slow_the_robot_down() -> None:
+    chase = Chase(np.array([[0.0, 5.0]]), 0.0)
+    for _ in range(40):
+        chase.step(Twist2(0.5, 0.0))
+        assert chase.held_by is HeldBy.NOTHING
+    assert chase.motion.twist.linear_mps > 0.49
+
+
+def test_the_nearer_someone_is_the_slower_it_passes() -> None:
+    fastest = []
+    for aside in (0.8, 1.2, 1.6, 2.4):
+        chase, speeds = Chase(np.array([[2.0, aside]]), 0.0), [0.0]
+        for _ in range(400):
+            chase.step(Twist2(0.5, 0.0))
+            if abs(chase.pose.x - 2.0) < 0.2:
+                speeds.append(chase.motion.twist.linear_mps)
+        fastest.append(max(speeds))
+    assert fastest == sorted(fastest)
+    assert fastest[0] < 0.25 < 0.45 < fastest[-1]
+
+
+def test_turning_on_the_spot_is_always_allowed() -> None:
+    chase = Chase(np.array([[0.6, 0.0]]), 0.0)
+    for _ in range(20):
+        chase.step(Twist2(0.0, 0.5))
+        assert chase.held_by is HeldBy.NOTHING
+
+
+def test_who_is_told_of_is_named_as_the_reason() -> None:
+    chase, reasons = Chase(np.array([[1.0, 0.0]]), 0.0), set()
+    for _ in range(60):
+        chase.step(Twist2(0.5, 0.0))
+        reasons.add(chase.held_by)
+    assert reasons == {HeldBy.NOTHING, HeldBy.SOMEONE}
+    assert chase.pose.x < 0.5
