@@ -3,6 +3,8 @@
 from explore_bt.behaviours.back_out import BackOut
 from explore_bt.behaviours.budget_left import BudgetLeft
 from explore_bt.behaviours.choose_home import ChooseHome
+from explore_bt.behaviours.choose_place import ChoosePlace
+from explore_bt.behaviours.clear_map import ClearMap
 from explore_bt.behaviours.drive_to import DriveTo
 from explore_bt.behaviours.find_frontier import FindFrontier
 from explore_bt.behaviours.find_next_heading import FindNextHeading
@@ -24,6 +26,8 @@ __all__ = [
     "BackOut",
     "BudgetLeft",
     "ChooseHome",
+    "ChoosePlace",
+    "ClearMap",
     "DriveTo",
     "FindFrontier",
     "FindNextHeading",
@@ -46,6 +50,8 @@ LEAVES = (
     BackOut,
     BudgetLeft,
     ChooseHome,
+    ChoosePlace,
+    ClearMap,
     DriveTo,
     FindFrontier,
     FindNextHeading,

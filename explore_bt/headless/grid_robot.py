@@ -105,6 +105,10 @@ class GridRobot:
         """Close a place where the caller got no farther."""
         self._tight.add(position)
 
+    def clear_map(self, radius_m: float) -> bool:  # noqa: ARG002  # the map is the caller's
+        """The caller keeps the map."""
+        return False
+
     def reopen(self, chances: int) -> int:
         """Open such places again, unless that was done ``chances`` times before; how many."""
         return self._tight.reopen(chances)

@@ -154,5 +154,8 @@ class RobotServices(Protocol):
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place (x, y, metres, ``map`` frame) that proved too tight: plans and maps shun it."""
 
+    def clear_map(self, radius_m: float) -> bool:
+        """Have SLAM forget the obstacles within so many metres until it sees them again; whether it can."""
+
     def reopen(self, chances: int) -> int:
         """Open such places again, unless that was done ``chances`` times before; how many."""

@@ -50,6 +50,15 @@ class Slam(Plugin):
         None also when the grid has grown or moved: the caller then takes all of it.
         """
 
+    def forget_near(self, position: tuple[float, float], radius_m: float) -> bool:  # noqa: ARG002  # for those that can
+        """Call obstacles free until they are seen again; False where a plugin cannot (the default).
+
+        Args:
+            position: x, y in metres, ``map`` frame.
+            radius_m: how far about it.
+        """
+        return False
+
     @abstractmethod
     def trajectory(self) -> Trajectory:
         """The best present belief about the whole way so far, one pose per scan, ``map`` frame."""

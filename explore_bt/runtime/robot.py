@@ -232,6 +232,10 @@ class Robot:
         x, y = position
         self.tell("warning", "tight place", f"({x:.2f}, {y:.2f}) is closed: the gate held the robot there")
 
+    def clear_map(self, radius_m: float) -> bool:
+        """Have SLAM forget the obstacles around the robot until it sees them again; whether it can."""
+        return self.slam.forget_near(self.estimate().T_map_base.xy, radius_m)
+
     def reopen(self, chances: int) -> int:
         """Open such places again, unless that was done ``chances`` times before; how many."""
         return self._tight.reopen(chances)

@@ -69,6 +69,7 @@ class FakeRobot:
         self.refusal: PlanningFailure | None = None
         self.driven: list[Pose2] = []
         self.avoided: list[tuple[float, float]] = []
+        self.cleared: list[float] = []
         self.limited: tuple[Budget, ...] = ()
         self.moving: tuple[MovingObstacle, ...] = ()
 
@@ -100,6 +101,11 @@ class FakeRobot:
     def avoid(self, position: tuple[float, float]) -> None:
         """Remember it in ``avoided``."""
         self.avoided.append(position)
+
+    def clear_map(self, radius_m: float) -> bool:
+        """Remember the radius in ``cleared``."""
+        self.cleared.append(radius_m)
+        return True
 
     def reopen(self, chances: int) -> int:  # noqa: ARG002  # a fake has no memory of chances
         """Empty ``avoided``, whatever the chances."""

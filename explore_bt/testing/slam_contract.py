@@ -120,6 +120,26 @@ class SlamContract(CloudSlamContract):
         later = slam.grid()
         assert later.revision > grid.revision, f"two different maps share revision {grid.revision}"
 
+    def test_what_is_forgotten_is_free_until_it_is_seen_again(self) -> None:
+        slam, robot = self._ready(_START)
+        _feed(slam, robot.drive(0.0, 0.0, 1.0))
+        before, (x, y) = slam.grid(), robot.pose.xy
+        reach_m = 3.0
+        if not slam.forget_near((x, y), reach_m):
+            assert slam.grid() is before, "forget_near() said that it cannot, and changed the map"
+            return
+        after = slam.grid()
+        centres = before.centers_of(np.argwhere(before.cells == OCCUPIED))
+        away_m = np.hypot(centres[:, 0] - x, centres[:, 1] - y)
+        now = after.cells[before.cells == OCCUPIED]
+        inner, outer = away_m < reach_m - 0.1, away_m > reach_m + 0.1
+        assert (now[inner] == FREE).all(), f"an obstacle within {reach_m} m is still there"
+        assert (now[outer] == OCCUPIED).all(), f"an obstacle beyond {reach_m} m is gone"
+        assert np.array_equal(after.cells[before.cells != OCCUPIED], before.cells[before.cells != OCCUPIED])
+        _feed(slam, robot.drive(0.0, 0.0, 1.5))
+        back = np.mean(slam.grid().cells[before.cells == OCCUPIED][inner] == OCCUPIED)
+        assert back > 0.8, f"only {100.0 * back:.0f} % of what stands in sight came back"
+
     def test_changed_since_names_every_changed_cell(self) -> None:
         slam, robot = self._ready(_START)
         _feed(slam, robot.drive(0.2, 0.0, 0.5))

@@ -6,6 +6,8 @@ import pytest
 from explore_bt.behaviours import (
     LEAVES,
     ChooseHome,
+    ChoosePlace,
+    ClearMap,
     GivenUp,
     GiveUpGoal,
     RecordWaypoint,
@@ -64,6 +66,18 @@ def test_home_is_where_the_mission_began(robot: FakeRobot, board: Blackboard) ->
     robot.pose = Pose2(5.0, 5.0, 0.0)
     ChooseHome("home", robot, board).tick_once()
     assert board["goal"].pose == Pose2(1.0, 2.0, 0.5)
+
+
+def test_an_errand_goes_to_the_place_that_is_named(robot: FakeRobot, board: Blackboard) -> None:
+    ChoosePlace("place", robot, board, {"x": 3.0, "y": -2.0, "yaw": 1.0}).tick_once()
+    assert board["goal"].pose == Pose2(3.0, -2.0, 1.0)
+
+
+def test_the_map_around_the_robot_is_cleared(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = ClearMap("clear", robot, board, {"radius": 1.5})
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+    assert robot.cleared == [1.5]
 
 
 def test_a_turn_is_a_path_of_one_pose_in_the_new_direction(robot: FakeRobot, board: Blackboard) -> None:

@@ -11,8 +11,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.types import UNKNOWN, GridWindow, OccupancyGrid, Pose2
-from explore_bt_slam.log_odds import draw_sweep
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid, Pose2
+from explore_bt_slam.log_odds import MISS, draw_sweep
 from explore_bt_slam.sweep import Sweep
 
 __all__ = ["Canvas"]
@@ -71,6 +71,21 @@ class Canvas:
         changed = painter(cells, np.asarray(low * self._cell_m, dtype=np.float64))
         self._cells[row0:row1, col0:col1] = cells
         self._note(changed.moved(row0, col0))
+
+    def forget_near(self, position: tuple[float, float], radius_m: float) -> None:
+        """Call occupied cells within a circle free, so weakly that the next return there is believed."""
+        if not self._cells.size:
+            return
+        centre = np.array(position) / self._cell_m - self._corner
+        col0, row0 = np.maximum(np.floor(centre - radius_m / self._cell_m).astype(int), 0)
+        col1, row1 = np.ceil(centre + radius_m / self._cell_m).astype(int) + 1
+        cells, evidence = self._cells[row0:row1, col0:col1], self._evidence[row0:row1, col0:col1]
+        rows, cols = np.ogrid[row0 : row0 + cells.shape[0], col0 : col0 + cells.shape[1]]
+        is_near = np.hypot(cols + 0.5 - centre[0], rows + 0.5 - centre[1]) * self._cell_m <= radius_m
+        wanted = is_near & (cells == OCCUPIED)
+        cells[wanted], evidence[wanted] = FREE, MISS
+        if wanted.any():
+            self._note(GridWindow(row0, col0, row0 + cells.shape[0], col0 + cells.shape[1]))
 
     def redraw(self, sweeps: list[tuple[Sweep, Pose2]]) -> None:
         """Forget all evidence and draw these sweeps in this order; the canvas never shrinks."""

@@ -87,6 +87,10 @@ class GroundTruthSlam(Slam):
         """Window of cells that may differ from that revision."""
         return self._mapper.changed_since(revision)
 
+    def forget_near(self, position: tuple[float, float], radius_m: float) -> bool:
+        """Until the next sweep that sees them."""
+        return self._mapper.forget_near(position, radius_m)
+
     def trajectory(self) -> Trajectory:
         """The true way, one pose per scan."""
         return self._journal.trajectory(self._origin)

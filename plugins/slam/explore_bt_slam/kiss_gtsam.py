@@ -80,6 +80,10 @@ class KissGtsam(Slam):
         """Window of cells that may differ from that revision."""
         return self._pipeline.mapper.changed_since(revision)
 
+    def forget_near(self, position: tuple[float, float], radius_m: float) -> bool:
+        """Until the next sweep that sees them."""
+        return self._pipeline.mapper.forget_near(position, radius_m)
+
     def trajectory(self) -> Trajectory:
         """One pose per scan, moved along with the graph."""
         return self._pipeline.journal.trajectory(self._pipeline.back.poses)

@@ -78,6 +78,12 @@ class Mapper:
             self._kept.append(KeptSweep(keyframe, relative, sweep))
             self._kept_at = pose
 
+    def forget_near(self, position: tuple[float, float], radius_m: float) -> bool:
+        """See ``Slam.forget_near``; a redraw brings back what the kept sweeps show."""
+        self._catch_up()
+        self._canvas.forget_near(position, radius_m)
+        return True
+
     def follow(self, keyframes: NDArray[np.float64]) -> None:
         """The graph's poses, (N, 3): a redraw is due if one has moved by more than 1 cm or 0.1° since drawn.
 

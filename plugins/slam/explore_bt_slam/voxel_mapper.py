@@ -46,6 +46,10 @@ class VoxelMapper(Mapper):
         self._active = -1
         self._drawn_poses = np.zeros((0, 3))
 
+    def forget_near(self, position: tuple[float, float], radius_m: float) -> bool:  # noqa: ARG002  # it cannot
+        """The voxels would bring it back."""
+        return False
+
     @property
     def submap_poses(self) -> NDArray[np.float64]:
         """(S, 3) float64 as the graph has them, ``map`` frame."""
