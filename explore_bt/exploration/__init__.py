@@ -46,7 +46,7 @@ from explore_bt.exploration.remains import sentences, what_remains
 from explore_bt.exploration.retrace import way_back
 from explore_bt.exploration.revisit import is_allowed, repeated_visit
 from explore_bt.exploration.tour import open_tour
-from explore_bt.exploration.travel import nearest_reaching_cell, travel_field
+from explore_bt.exploration.travel import Travel, nearest_reaching_cell, travel_field
 from explore_bt.exploration.view_places import ViewPlaces
 from explore_bt.exploration.view_tour import TourTaste, View, ViewSet, choose_views, first_run, order_views
 from explore_bt.exploration.waypoint import next_waypoint
@@ -63,6 +63,7 @@ __all__ = [
     "Outlooks",
     "Reach",
     "TourTaste",
+    "Travel",
     "View",
     "ViewPlaces",
     "ViewSet",

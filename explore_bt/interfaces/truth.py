@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 
+import numpy as np
+from numpy.typing import NDArray
+
 from explore_bt.types import OccupancyGrid, Pose2
 
 __all__ = ["GroundTruth"]
@@ -18,11 +21,11 @@ class GroundTruth(ABC):
 
     @abstractmethod
     def contacts(self) -> int:
-        """How many separate times the footprint has touched something."""
+        """How many separate times the footprint has touched something, or somebody while it moved."""
 
     @abstractmethod
     def clearance_m(self) -> float:
-        """Exact distance from the robot's centre to the nearest obstacle, metres."""
+        """Exact distance from the robot's centre to the nearest obstacle, metres; people do not count."""
 
     @abstractmethod
     def observable_floor(self) -> OccupancyGrid:
@@ -33,3 +36,15 @@ class GroundTruth(ABC):
         and line of sight of a reachable place. Those cells are ``FREE``, all others ``UNKNOWN``.
         Computed once, on first use.
         """
+
+    def people(self) -> NDArray[np.float64]:
+        """Everybody who is about now.
+
+        Returns:
+            (K, 5) float64: x, y, vx, vy, radius; metres and seconds. Nobody, unless overridden.
+        """
+        return np.empty((0, 5))
+
+    def touched_by_people(self) -> int:
+        """How many separate times somebody has touched the footprint while it stood."""
+        return 0

@@ -9,7 +9,7 @@ from pathlib import Path
 import yaml
 
 from explore_bt.errors import WorldError
-from explore_bt.units import ANGLE, LENGTH, Dimension, parse_quantity
+from explore_bt.units import ANGLE, DURATION, LENGTH, Dimension, parse_quantity
 
 __all__ = ["MarkedFile"]
 
@@ -163,9 +163,13 @@ class MarkedFile:
         """A list of lengths, one for each word of ``names`` (``"x y radius"``), metres."""
         return self._numbers(node, names, [LENGTH] * len(names.split()))
 
-    def pose(self, node: yaml.Node | None) -> tuple[float, float, float] | None:
-        """``[x, y, heading]`` in metres and radians."""
-        values = self._numbers(node, "x y heading", [LENGTH, LENGTH, ANGLE])
+    def durations(self, node: yaml.Node | None, names: str) -> tuple[float, ...] | None:
+        """A list of durations, one for each word of ``names`` (``"begin end"``), seconds."""
+        return self._numbers(node, names, [DURATION] * len(names.split()))
+
+    def pose(self, node: yaml.Node | None, angle_name: str = "heading") -> tuple[float, float, float] | None:
+        """``[x, y, heading]`` in metres and radians; the last may have another name."""
+        values = self._numbers(node, f"x y {angle_name}", [LENGTH, LENGTH, ANGLE])
         return None if values is None else (values[0], values[1], values[2])
 
     def _numbers(

@@ -69,6 +69,13 @@ class TestSim2dOnAMap(DriverContract):
         return Sim2d(Sim2dOptions.model_validate({"world": world, "noise": False, "beams": 90}))
 
 
+class TestSim2dAmongPeople(DriverContract):
+    """With walkers, a person on a route, a door that shuts and furniture that is moved."""
+
+    def make(self, tmp_path: Path) -> Sim2d:
+        return Sim2d(Sim2dOptions.model_validate({"world": WORLDS / "busy_flat.yaml", "walkers": 3}))
+
+
 def test_the_package_registers_its_drivers() -> None:
     assert Sim2d in explore_bt_register()
 

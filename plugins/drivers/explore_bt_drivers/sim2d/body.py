@@ -91,12 +91,17 @@ class Body:
     limits allow, without passing it. Half a second after the last command the body halts.
 
     ``command`` and ``advance`` belong to one thread; ``halt`` may be called from any.
+
+    Attributes:
+        track: where it has been.
+        world: what it runs into; may be exchanged for another version between two calls.
+        contacts: how many separate times it has.
     """
 
     def __init__(self, world: World, start: Pose2, radius_m: float, limits: MotionLimits) -> None:
         self.track = Track(start)
         self.contacts = 0
-        self._world = world
+        self.world = world
         self._radius_m = radius_m
         self._limits = limits
         self._limit_values = (
@@ -165,7 +170,7 @@ class Body:
             until = last_step if order is _HALT else min(last_step, alarm)
             states, row, count = self.track.room(until - step)
             self._touching, touches = advance(
-                self._world.index,
+                self.world.index,
                 states,
                 row,
                 count,

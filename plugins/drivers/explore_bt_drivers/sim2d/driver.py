@@ -11,6 +11,7 @@ from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.sim2d.simulation import Simulation
 from explore_bt_drivers.sim2d.start import choose_start
+from explore_bt_drivers.sim2d.town import Town
 from explore_bt_drivers.sim2d.truth import Sim2dTruth
 from explore_bt_drivers.world import load_world, observable_floor
 
@@ -20,7 +21,7 @@ _WARM_UP_S = 0.2
 
 
 class Sim2d(Driver):
-    """A round robot with lidar, IMU and slipping wheels in a drawn world or a ROS map.
+    """A round robot with lidar, IMU and slipping wheels among people, in a drawn world or a ROS map.
 
     The ``map`` frame is the world's own. Time passes only while someone waits on the clock; the same
     world, options, seed and commands give the same measurements, bit for bit.
@@ -43,17 +44,19 @@ class Sim2d(Driver):
         """Load the world, place the robot, compile the kernels.
 
         Raises:
-            WorldError: a world that cannot be used, or a start inside an obstacle.
+            WorldError: a world that cannot be used, a start inside an obstacle, no floor for walkers.
         """
         options = self._options
         world = load_world(options.world)
         self._start = choose_start(world, context.start, options.radius)
-        rehearsal = Simulation(world, options, self._start, context)
+        town = Town(world, options, self._start)
+        rehearsal = Simulation(world, options, self._start, context, town.crowd(context.rng("walkers")))
         rehearsal.body.command(Twist2(0.1, 0.1))
         rehearsal.wait_until(_WARM_UP_S)
         observable_floor(world, self._start.xy, options.radius, 0.0)
-        self._simulation = Simulation(world, options, self._start, context)
-        self._truth = Sim2dTruth(world, self._simulation.body, options.radius, options.lidar_range)
+        crowd = town.crowd(context.rng("walkers"))
+        self._simulation = Simulation(world, options, self._start, context, crowd)
+        self._truth = Sim2dTruth(world, self._simulation.body, crowd, options.radius, options.lidar_range)
 
     @property
     def clock(self) -> Clock:
@@ -102,7 +105,7 @@ class Sim2d(Driver):
         self._closed = True
 
     def truth(self) -> GroundTruth | None:
-        """Pose, contacts, clearance and the floor that can be explored."""
+        """Pose, contacts, clearance, people, and the floor that can be explored."""
         return self._truth
 
     def _running(self) -> Simulation:

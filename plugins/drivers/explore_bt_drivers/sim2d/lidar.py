@@ -9,6 +9,7 @@ from numba import njit
 
 from explore_bt.types import Scan2D
 from explore_bt_drivers.sim2d.body import Track
+from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.motion import YAW, X, Y, place_at, value_at
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.world import World
@@ -22,7 +23,11 @@ _TAIL = 4.0
 
 
 class Lidar:
-    """Sweeps of the world; beam i of N points to -π + 2πi/N and the last one is measured at the stamp."""
+    """Sweeps of the world; beam i of N points to -π + 2πi/N and the last one is measured at the stamp.
+
+    Attributes:
+        world: what sweeps see that end from now on; may be exchanged for another version between two calls.
+    """
 
     def __init__(
         self,
@@ -30,8 +35,10 @@ class Lidar:
         options: Sim2dOptions,
         rng: np.random.Generator,
         dropout_rng: np.random.Generator,
+        crowd: Crowd,
     ) -> None:
-        self._world = world
+        self.world = world
+        self._crowd = crowd
         self._rate_hz = options.lidar_rate
         self._range_m = options.lidar_range
         self._noise_m = options.range_noise if options.noise else 0.0
@@ -53,11 +60,14 @@ class Lidar:
     def _sweep(self, track: Track, stamp_s: float) -> Scan2D:
         ranges = np.empty(len(self._angles), dtype=np.float64)
         reach = self._range_m + _TAIL * self._noise_m
-        index, states = self._world.index, track.states
+        index, states = self.world.index, track.states
         _cast_sweep(index, states, track.first_step, stamp_s, self._times, self._angles, reach, ranges)
+        shown = self._crowd.cast(track, stamp_s, self._times, self._angles, reach, ranges)
         if self._noise_m > 0.0:
             ranges += self._rng.normal(0.0, self._noise_m, len(ranges))
         ranges[ranges > self._range_m] = math.inf
+        if shown is not None:  # people come nearer than walls do, even into the lidar
+            ranges[shown & (ranges < _RANGE_MIN_M)] = math.nan
         if self._dropout > 0.0:
             ranges[self._dropout_rng.random(len(ranges)) < self._dropout] = math.nan
         measured = ranges.astype(np.float32)

@@ -51,6 +51,10 @@ class Sim2dOptions(PluginOptions):
     turn_acceleration: AngularAcceleration = Field(2.0, ge=0.01, le=100.0, description="its largest change")
     turn_jerk: AngularJerk = Field(8.0, ge=0.01, le=2000.0, description="the largest change of that")
 
+    walkers: int = Field(0, ge=0, le=20, description="people who walk about at random and heed nobody")
+    walker_speed: Speed = Field(1.2, ge=0.01, le=5.0, description="their speed")
+    walker_radius: Length = Field(0.25, ge=0.05, le=1.0, description="radius of each, who is a disc")
+
     battery_life: Duration | None = Field(
         None, gt=0, description="a full battery lasts so long; none by default"
     )

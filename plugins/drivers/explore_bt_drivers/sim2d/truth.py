@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from explore_bt.interfaces import GroundTruth
 from explore_bt.types import OccupancyGrid, Pose2
 from explore_bt_drivers.sim2d.body import Body
+from explore_bt_drivers.sim2d.crowd import Crowd
+from explore_bt_drivers.sim2d.motion import STEP_S
 from explore_bt_drivers.world import World, observable_floor
 
 __all__ = ["SPARE_M", "Sim2dTruth"]
@@ -16,11 +21,12 @@ SPARE_M = 0.025
 
 
 class Sim2dTruth(GroundTruth):
-    """Reads the body and the world; changes nothing."""
+    """Reads the body, the crowd and the world; changes nothing."""
 
-    def __init__(self, world: World, body: Body, radius_m: float, range_m: float) -> None:
-        self._world = world
+    def __init__(self, world: World, body: Body, crowd: Crowd, radius_m: float, range_m: float) -> None:
+        self._drawn = world
         self._body = body
+        self._crowd = crowd
         self._radius_m = radius_m
         self._range_m = range_m
         self._start = body.pose
@@ -30,18 +36,29 @@ class Sim2dTruth(GroundTruth):
         return self._body.pose
 
     def contacts(self) -> int:
-        """Separate touches; the footprint must move 5 mm away before it can touch again."""
-        return self._body.contacts
+        """Separate touches; 5 mm must come between before there can be another.
+
+        Of things, and of people where the robot moved faster than 0.05 m/s at some moment of the touch.
+        """
+        return self._body.contacts + self._crowd.contacts
 
     def clearance_m(self) -> float:
-        """Exact distance from the robot's centre to the nearest solid, metres."""
+        """Exact distance from the robot's centre to the nearest solid of the present, metres; no people."""
         pose = self._body.pose
-        return self._world.clearance_m(pose.x, pose.y)
+        return self._body.world.clearance_m(pose.x, pose.y)
+
+    def people(self) -> NDArray[np.float64]:
+        """Everybody in the world, at the time of ``pose``."""
+        return self._crowd.at(self._body.track.last_step * STEP_S)
+
+    def touched_by_people(self) -> int:
+        """Touches during which the robot did not move, those that go on included."""
+        return self._crowd.touches_at_rest
 
     def observable_floor(self) -> OccupancyGrid:
-        """Cells of 0.05 m (or the map file's own) that can be seen from where the robot can get to."""
+        """Cells of 0.05 m (or the map file's own) that can be seen from where it can get to, all as drawn."""
         return self._floor
 
     @cached_property
     def _floor(self) -> OccupancyGrid:
-        return observable_floor(self._world, self._start.xy, self._radius_m + SPARE_M, self._range_m)
+        return observable_floor(self._drawn, self._start.xy, self._radius_m + SPARE_M, self._range_m)

@@ -1,17 +1,24 @@
 """Worlds for simulated robots: files, geometry, what can be reached and seen."""
 
 from explore_bt_drivers.world.observable import fitting_cells, observable_floor
-from explore_bt_drivers.world.solid import Solid, WorldPlan
+from explore_bt_drivers.world.plan import Person, Stand, Thing, WorldPlan
+from explore_bt_drivers.world.solid import Solid
+from explore_bt_drivers.world.versions import with_every_stand, with_solids
 from explore_bt_drivers.world.world import World, load_world
 from explore_bt_drivers.world.world_file import FORMAT, read_world_file
 
 __all__ = [
     "FORMAT",
+    "Person",
     "Solid",
+    "Stand",
+    "Thing",
     "World",
     "WorldPlan",
     "fitting_cells",
     "load_world",
     "observable_floor",
     "read_world_file",
+    "with_every_stand",
+    "with_solids",
 ]

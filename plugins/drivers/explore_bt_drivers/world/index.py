@@ -13,9 +13,21 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["SegmentIndex", "build_index", "cast_ray", "cast_rays", "fits", "nearest", "winding"]
+__all__ = [
+    "SegmentIndex",
+    "build_index",
+    "cast_ray",
+    "cast_rays",
+    "clearance_of",
+    "fits",
+    "nearest",
+    "way_fits",
+    "winding",
+]
 
 _EDGE = 1e-9
+_STRIDE_M = 0.05
+_FAR_M = 1.0
 
 
 class SegmentIndex(NamedTuple):
@@ -186,6 +198,17 @@ def winding(segments, x, y):  # type: ignore[no-untyped-def]  # kernel
 
 
 @njit(cache=True)
+def clearance_of(segments, x, y):  # type: ignore[no-untyped-def]  # kernel
+    """Distance from a point to the solids that (M, 4) segments enclose: 0 inside, inf without any."""
+    if winding(segments, x, y) > 0:
+        return 0.0
+    best = math.inf
+    for m in range(segments.shape[0]):
+        best = min(best, _distance(segments, m, x, y))
+    return best
+
+
+@njit(cache=True)
 def fits(index, points, radius):  # type: ignore[no-untyped-def]  # kernel
     """(N,) bool: whether no segment comes nearer than ``radius`` to each of (N, 2) points."""
     result = np.empty(points.shape[0], dtype=np.bool_)
@@ -193,3 +216,22 @@ def fits(index, points, radius):  # type: ignore[no-untyped-def]  # kernel
         distance, _ = nearest(index, points[i, 0], points[i, 1], radius)
         result[i] = distance >= radius
     return result
+
+
+@njit(cache=True)
+def way_fits(index, ax, ay, bx, by, radius):  # type: ignore[no-untyped-def]  # kernel
+    """Whether a disc can go straight from a to b.
+
+    Within (distance - radius) of a place all others fit too, hence long strides; where they are at their
+    shortest, a corner may reach ``_STRIDE_M``² / (8 radius) into the disc between two of them.
+    """
+    length = math.hypot(bx - ax, by - ay)
+    along = 0.0
+    while along < length:
+        x, y = ax + (bx - ax) * along / length, ay + (by - ay) * along / length
+        distance, _ = nearest(index, x, y, radius + _FAR_M)
+        if distance < radius:
+            return False
+        along += max(distance - radius, _STRIDE_M)
+    distance, _ = nearest(index, bx, by, radius)
+    return distance >= radius

@@ -13,15 +13,21 @@ from explore_bt_drivers.world.solid import Solid, box_corners, circle_corners, c
 __all__ = ["SHAPES", "read_furniture"]
 
 SHAPES = ("box", "polygon", "circle")
+_EXTRAS = ("turn", "legs", "height", "moved")
 _SMALLEST_AREA_M2 = 1e-6
 
 
-def read_furniture(file: MarkedFile, node: yaml.Node, default_height_m: float) -> list[Solid]:
-    """One entry of ``furniture``: ``{name, box | polygon | circle, turn, legs, height}``.
+def read_furniture(
+    file: MarkedFile, node: yaml.Node, default_height_m: float
+) -> tuple[list[Solid], yaml.Node | None]:
+    """One entry of ``furniture``: ``{name, box | polygon | circle, turn, legs, height, moved}``.
 
     With ``legs`` only four square legs of that width stand on the floor, one in each corner of the box.
+
+    Returns:
+        The solids as drawn, and the value of ``moved``, which only makes sense once the bounds are known.
     """
-    keys = file.fields(node, "furniture", required=("name",), optional=(*SHAPES, "turn", "legs", "height"))
+    keys = file.fields(node, "furniture", required=("name",), optional=(*SHAPES, *_EXTRAS))
     name = file.text(keys.get("name"), "name")
     height = file.quantity(keys.get("height"), LENGTH, "height", low=0.01)
     turn = file.quantity(keys.get("turn"), ANGLE, "turn")
@@ -30,14 +36,15 @@ def read_furniture(file: MarkedFile, node: yaml.Node, default_height_m: float) -
     if keys and len(shapes) != 1:
         found = " and ".join(shapes) or "no shape"
         file.fault(node, f"furniture has {found}; expected one of {', '.join(SHAPES)}")
-        return []
+        return [], None
     if not shapes or name is None:
-        return []
+        return [], None
     for key in ("turn", "legs"):
         if key in keys and shapes[0] != "box":
             file.fault(keys[key], f"{key} goes with a box, not with a {shapes[0]}")
     footprints = _footprints(file, keys[shapes[0]], shapes[0], turn or 0.0, legs)
-    return [Solid(name, corners, height or default_height_m) for corners in footprints]
+    solids = [Solid(name, corners, height or default_height_m) for corners in footprints]
+    return solids, keys.get("moved")
 
 
 def _footprints(

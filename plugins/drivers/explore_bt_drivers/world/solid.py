@@ -1,4 +1,4 @@
-"""What a world file describes: solids on the floor, and the edge of the world."""
+"""Solids on the floor and the shapes they are made of."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
 
-__all__ = ["Solid", "WorldPlan", "box_corners", "circle_corners", "crossing_edges", "signed_area"]
+__all__ = ["Solid", "box_corners", "circle_corners", "crossing_edges", "outline_edges", "signed_area"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,21 +28,6 @@ class Solid:
     height_m: float
 
 
-@dataclass(frozen=True, slots=True)
-class WorldPlan:
-    """A world as drawn.
-
-    Attributes:
-        bounds: x0, y0, x1, y1 in metres; the world ends there, its edge is solid.
-        start: where the robot begins unless the mission says otherwise.
-    """
-
-    name: str
-    solids: tuple[Solid, ...]
-    bounds: tuple[float, float, float, float]
-    start: Pose2 | None
-
-
 def box_corners(x0: float, y0: float, x1: float, y1: float, turn_rad: float = 0.0) -> NDArray[np.float64]:
     """(4, 2) counter-clockwise corners of a rectangle, turned about its centre."""
     x0, x1, y0, y1 = min(x0, x1), max(x0, x1), min(y0, y1), max(y0, y1)
@@ -55,6 +40,11 @@ def circle_corners(x: float, y: float, radius_m: float, count: int = 32) -> NDAr
     """(count, 2) counter-clockwise corners on a circle."""
     angles = np.arange(count) * (2.0 * math.pi / count)
     return np.column_stack((x + radius_m * np.cos(angles), y + radius_m * np.sin(angles)))
+
+
+def outline_edges(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N, 4) edges round (N, 2) corners: x, y of begin and end; solid on the left if counter-clockwise."""
+    return np.hstack((corners, np.roll(corners, -1, axis=0)))
 
 
 def signed_area(corners: NDArray[np.float64]) -> float:

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from explore_bt_drivers.world.solid import Solid
 
-__all__ = ["Door", "DoorError", "Wall", "cut_doors", "wall_solid"]
+__all__ = ["Door", "DoorError", "Wall", "cut_doors", "door_leaf", "wall_solid"]
 
 _SLACK = 1e-6
+_LEAF_M = 0.04
 
 
 class DoorError(Exception):
@@ -87,6 +88,21 @@ def cut_doors(walls: Sequence[Wall], door: Door) -> list[Wall]:
             f"{best.name}; move it along the wall or make it narrower"
         )
     return [piece for wall in walls for piece in (_split(wall, door) if wall in hosts else [wall])]
+
+
+def door_leaf(walls: Sequence[Wall], door: Door) -> Solid:
+    """What fills the opening of a door while it is shut: 4 cm thick at most, as high as its wall.
+
+    Args:
+        walls: before the door is cut out of them; one holds it.
+        door: of which ``cut_doors`` has nothing to complain.
+    """
+    wall = next(wall for wall in walls if _hosts(wall, door))
+    along, _ = wall.station(door.at)
+    opening = wall.piece(along - door.width_m / 2, along + door.width_m / 2)
+    thickness = min(_LEAF_M, wall.thickness_m)
+    name = f"door {door.name}"
+    return wall_solid(replace(opening, name=name, thickness_m=thickness, capped=(False, False)))
 
 
 def wall_solid(wall: Wall) -> Solid:

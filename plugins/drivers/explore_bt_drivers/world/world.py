@@ -15,10 +15,11 @@ from explore_bt.maps import MarkedFile, read_map
 from explore_bt.types import FREE, OCCUPIED, OccupancyGrid, Pose2
 from explore_bt_drivers.world.index import SegmentIndex, build_index, cast_rays, nearest, winding
 from explore_bt_drivers.world.outline import grid_outline
-from explore_bt_drivers.world.solid import WorldPlan, box_corners
+from explore_bt_drivers.world.plan import Person, Thing, WorldPlan
+from explore_bt_drivers.world.solid import box_corners, outline_edges
 from explore_bt_drivers.world.world_file import read_world_file
 
-__all__ = ["World", "load_world"]
+__all__ = ["World", "floor_like", "load_world"]
 
 _FLOOR_RESOLUTION_M = 0.05
 _LARGEST_AREA_M2 = 100_000.0
@@ -26,13 +27,16 @@ _LARGEST_AREA_M2 = 100_000.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class World:
-    """Static geometry in the ``map`` frame; immutable, so that robots can share it.
+    """Geometry in the ``map`` frame as drawn; immutable, so that robots can share it.
 
     Attributes:
         index: all segments, solid on their left.
         owners: (M,) int32, for each segment the place of its thing in ``names``.
         floor: cells of 0.05 m (or the map file's) into which nothing solid reaches: ``FREE``.
         start: where the world's file says that robots begin.
+        fixed: so many segments come first that never change; those of ``things`` follow.
+        things: what changes in the course of time.
+        people: who walks there.
     """
 
     source: Path
@@ -41,6 +45,9 @@ class World:
     names: tuple[str, ...]
     floor: OccupancyGrid
     start: Pose2 | None = None
+    fixed: int = 0
+    things: tuple[Thing, ...] = ()
+    people: tuple[Person, ...] = ()
 
     def is_free(self, x: float, y: float) -> bool:
         """Whether a point (metres) lies in no solid and within the world."""
@@ -104,21 +111,36 @@ def _from_map(path: Path) -> World:
     if len(segments) == 0:  # all solid: the caller refuses it
         segments = np.zeros((1, 4))
     index = build_index(segments)
-    return World(path, index, np.zeros(len(segments), dtype=np.int32), ("a wall",), floor)
+    return World(
+        path, index, np.zeros(len(segments), dtype=np.int32), ("a wall",), floor, fixed=len(segments)
+    )
 
 
 def _from_plan(path: Path) -> World:
     plan = read_world_file(path)
     _check_size(path, plan.bounds[2] - plan.bounds[0], plan.bounds[3] - plan.bounds[1])
+    moved = {solid for thing in plan.things for solid in thing.stands[0].solids}
+    fixed = [solid for solid in plan.solids if solid not in moved]
+    solids = [*fixed, *(solid for solid in plan.solids if solid in moved)]
     edge = box_corners(*plan.bounds)[::-1]
-    outlines = [edge, *(solid.corners for solid in plan.solids)]
-    segments = np.concatenate([np.hstack((corners, np.roll(corners, -1, axis=0))) for corners in outlines])
-    names = tuple(dict.fromkeys(["the edge of the world", *(solid.name for solid in plan.solids)]))
-    owners = [0, *(names.index(solid.name) for solid in plan.solids)]
+    outlines = [edge, *(solid.corners for solid in solids)]
+    segments = np.concatenate([outline_edges(corners) for corners in outlines])
+    ever = [solid.name for thing in plan.things for stand in thing.stands for solid in stand.solids]
+    names = tuple(dict.fromkeys(["the edge of the world", *(solid.name for solid in plan.solids), *ever]))
+    owners = [0, *(names.index(solid.name) for solid in solids)]
     lengths = [len(corners) for corners in outlines]
     index = build_index(np.ascontiguousarray(segments))
-    floor = _floor_of(index, plan)
-    return World(path, index, np.repeat(owners, lengths).astype(np.int32), names, floor, plan.start)
+    return World(
+        path,
+        index,
+        np.repeat(owners, lengths).astype(np.int32),
+        names,
+        _floor_of(index, plan),
+        plan.start,
+        sum(lengths[: 1 + len(fixed)]),
+        plan.things,
+        plan.people,
+    )
 
 
 def _floor_of(index: SegmentIndex, plan: WorldPlan) -> OccupancyGrid:
@@ -126,8 +148,14 @@ def _floor_of(index: SegmentIndex, plan: WorldPlan) -> OccupancyGrid:
     x0, y0 = (math.floor(value / size + 1e-9) * size for value in plan.bounds[:2])
     cols = math.ceil((plan.bounds[2] - x0) / size - 1e-9)
     rows = math.ceil((plan.bounds[3] - y0) / size - 1e-9)
-    cells = _free_cells(index, x0, y0, size, rows, cols)
-    return OccupancyGrid(np.where(cells, FREE, OCCUPIED).astype(np.int8), size, (x0, y0))
+    return floor_like(OccupancyGrid(np.zeros((rows, cols), dtype=np.int8), size, (x0, y0)), index)
+
+
+def floor_like(grid: OccupancyGrid, index: SegmentIndex) -> OccupancyGrid:
+    """The floor that segments leave free, in the cells of another grid."""
+    (x0, y0), (rows, cols) = grid.origin_xy, grid.shape
+    cells = _free_cells(index, x0, y0, grid.resolution_m, rows, cols)
+    return OccupancyGrid(np.where(cells, FREE, OCCUPIED).astype(np.int8), grid.resolution_m, grid.origin_xy)
 
 
 @njit(cache=True)

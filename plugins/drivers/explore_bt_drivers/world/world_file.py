@@ -10,10 +10,12 @@
     walls:                                             # any other walls, along their centre lines
       - {name: screen, path: [[1, 3], [1, 2], [2, 2]]}
     doors:                                             # openings, centred on a point of a wall
-      - {name: study door, at: [4, 1.5], width: 0.9 m}
+      - {name: study door, at: [4, 1.5], width: 0.9 m, shut: [[20 s, 60 s]]}
     furniture:                                         # two corners, or a polygon, or x, y, radius
       - {name: desk, box: [5.5, 2.2, 6.9, 2.9], legs: 5 cm}
-      - {name: plant, circle: [0.4, 2.6, 0.2]}
+      - {name: plant, circle: [0.4, 2.6, 0.2], moved: [{at: 60 s, to: [3.5, 2.6]}]}
+    people:                                            # there and back again for ever
+      - {name: ada, route: [[0.6, 0.6], [3.4, 0.6], [3.4, 1.5], [6.5, 1.5]], speed: 1.2 m/s}
 
 Lengths in metres, angles in radians unless they carry a unit; x to the right, y up.
 """
@@ -30,15 +32,18 @@ import yaml
 from explore_bt.maps import MarkedFile
 from explore_bt.types import Pose2
 from explore_bt.units import LENGTH
+from explore_bt_drivers.world.changes import read_moved, read_shut
 from explore_bt_drivers.world.index import winding
+from explore_bt_drivers.world.people import Room, read_people
+from explore_bt_drivers.world.plan import Thing, WorldPlan
 from explore_bt_drivers.world.shapes import read_furniture
-from explore_bt_drivers.world.solid import Solid, WorldPlan
-from explore_bt_drivers.world.walls import Door, DoorError, Wall, cut_doors, wall_solid
+from explore_bt_drivers.world.solid import Solid, outline_edges
+from explore_bt_drivers.world.walls import Door, DoorError, Wall, cut_doors, door_leaf, wall_solid
 
 __all__ = ["FORMAT", "read_world_file"]
 
 FORMAT = "explore-bt-world/1"
-_KEYS = ("name", "start", "bounds", "wall", "rooms", "walls", "doors", "furniture")
+_KEYS = ("name", "start", "bounds", "wall", "rooms", "walls", "doors", "furniture", "people")
 _WALL_THICKNESS_M, _WALL_HEIGHT_M, _FURNITURE_HEIGHT_M = 0.1, 2.5, 0.8
 _DOOR_WIDTH_M = 0.9
 
@@ -55,16 +60,23 @@ def read_world_file(path: Path) -> WorldPlan:
     name = file.text(keys.get("name"), "name") or path.stem
     start = file.pose(keys.get("start"))
     walls = _read_walls(file, keys)
-    walls = _read_doors(file, keys.get("doors"), walls)
+    walls, things = _read_doors(file, keys.get("doors"), walls)
     solids = [wall_solid(wall) for wall in walls]
+    moves: list[tuple[yaml.Node | None, list[Solid]]] = []
     for node in file.items(keys.get("furniture"), "furniture"):
-        solids += read_furniture(file, node, _FURNITURE_HEIGHT_M)
+        drawn, moved = read_furniture(file, node, _FURNITURE_HEIGHT_M)
+        solids += drawn
+        moves.append((moved, drawn))
     bounds = _read_bounds(file, keys.get("bounds"), solids)
+    for moved, drawn in moves:
+        things += read_moved(file, moved, drawn, bounds)
+    people = read_people(file, keys.get("people"), None if bounds is None else Room(solids, bounds))
     if bounds is None and not file.fault_count:
         file.fault(keys["format"], "the world is empty; draw rooms, walls or furniture, or give its bounds")
     file.raise_faults()
     assert bounds is not None
-    return WorldPlan(name, tuple(solids), bounds, None if start is None else Pose2(*start))
+    place = None if start is None else Pose2(*start)
+    return WorldPlan(name, tuple(solids), bounds, place, tuple(things), tuple(people))
 
 
 def _check_format(file: MarkedFile, node: yaml.Node | None) -> None:
@@ -121,10 +133,14 @@ def _read_wall(
     return [Wall(name, a, b, thickness, height) for a, b in itertools.pairwise(line)]
 
 
-def _read_doors(file: MarkedFile, node: yaml.Node | None, walls: list[Wall]) -> list[Wall]:
+def _read_doors(
+    file: MarkedFile, node: yaml.Node | None, walls: list[Wall]
+) -> tuple[list[Wall], list[Thing]]:
+    """The walls with openings for the doors, and the leaves of those that are shut at times."""
     doors: list[tuple[yaml.Node, Door]] = []
+    leaves: list[Thing] = []
     for number, item in enumerate(file.items(node, "doors"), start=1):
-        keys = file.fields(item, "a door", required=("at",), optional=("name", "width"))
+        keys = file.fields(item, "a door", required=("at",), optional=("name", "width", "shut"))
         name = file.text(keys.get("name"), "name") or str(number)
         width = file.quantity(keys.get("width"), LENGTH, "width", low=0.01) or _DOOR_WIDTH_M
         at = file.lengths(keys.get("at"), "x y")
@@ -132,22 +148,22 @@ def _read_doors(file: MarkedFile, node: yaml.Node | None, walls: list[Wall]) -> 
             continue
         door = Door(name, (at[0], at[1]), width)
         try:
-            walls = cut_doors(walls, door)
+            opened = cut_doors(walls, door)
         except DoorError as error:
             file.fault(keys["at"], str(error))
-        else:
-            doors.append((keys["at"], door))
+            continue
+        leaves += read_shut(file, keys.get("shut"), door_leaf(walls, door))
+        walls = opened
+        doors.append((keys["at"], door))
     for place, door in doors:
         _check_opening(file, place, door, walls)
-    return walls
+    return walls, leaves
 
 
 def _check_opening(file: MarkedFile, place: yaml.Node, door: Door, walls: Sequence[Wall]) -> None:
     """A wall that crosses an opening is a slip: the door would look open and be shut."""
     for wall in walls:
-        corners = wall_solid(wall).corners
-        segments = np.hstack((corners, np.roll(corners, -1, axis=0)))
-        if winding(segments, *door.at) > 0:
+        if winding(outline_edges(wall_solid(wall).corners), *door.at) > 0:
             file.fault(place, f"door {door.name} is blocked by {wall.name}, which crosses it; move the door")
 
 
