@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +21,11 @@ class Surroundings:
         points: (N, 2) float64, metres: its returns, also those of moving things.
         grid: the newest map; places that are out of the lidar's sight are known to it alone.
         moving: what moves nearby.
+        hidden: (K, 2) float64, metres: the edges of where someone may stand unseen; none while nobody is about.
     """
 
     stamp_s: float
     points: NDArray[np.float64]
     grid: OccupancyGrid
     moving: tuple[MovingObstacle, ...] = ()
+    hidden: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)))

@@ -1,9 +1,9 @@
-"""Things that move, found in scans: what stands now where an earlier scan saw free space.
+"""Things that move, found in scans: what stands now where there was free space.
 
-No map is asked: it draws a thing that pauses and keeps a trail of one that walks. A return is new if a scan
-of a moment ago saw through its place (free-space violation, as in Wolf & Sukhatme 2005). New returns that
-lie together are one thing, followed from scan to scan with constant velocity; one that pauses is held for as
-long as returns come from its place.
+A return is new if a scan of a moment ago saw through its place, or if it lies well inside the map's free
+floor (free-space violation, as in Wolf & Sukhatme 2005): the first finds who crosses the view, the second who
+comes into it from behind a corner. New returns that lie together are one thing, followed from scan to scan
+with constant velocity; one that pauses is held for as long as returns come from its place.
 """
 
 from __future__ import annotations
@@ -15,15 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.types import MovingObstacle, Pose2, Scan2D, Twist2
+from explore_bt.exploration import clearance_at
+from explore_bt.runtime.sight import Sight
+from explore_bt.types import MovingObstacle, OccupancyGrid
 
 __all__ = ["MovingThings"]
 
-REACH_M = 5.0
 _LAGS_S = (0.3, 0.5, 0.7, 1.0, 1.3)
 """How long ago places are asked for; a slow thing needs long to leave its own."""
-_THROUGH_M, _THROUGH_SHARE = 0.2, 0.03
-"""By how much (and for every metre away) a beam must have gone on behind a place to have seen through it."""
 _TOGETHER_M = 0.3
 _FEWEST = 3
 _WIDEST_M = 1.2
@@ -37,39 +36,10 @@ _MOVED_M = 0.25
 _HOLD_S = 5.0
 """What has paused for so long is left to the map."""
 _LOST_S = 0.5
+_ABOUT_S = 60.0
+_OFF_M = 0.15
+"""A return so far from everything that the map does not call free is no wall drawn a little thin."""
 _LEAST_RADIUS_M = 0.15
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Sight:
-    """One scan as seen from where it was taken; ``map`` frame.
-
-    Attributes:
-        origin: (2,) metres, of the beams' middle.
-        bearings: (N,) radians, ascending from the first one's.
-        free_m: (N,) how far each beam went; 0 where it tells nothing.
-        points: (M, 2) metres, the returns within ``REACH_M``, each taken from its own beam's place.
-    """
-
-    stamp_s: float
-    origin: NDArray[np.float64]
-    bearings: NDArray[np.float64]
-    free_m: NDArray[np.float64]
-    points: NDArray[np.float64]
-
-    def sees_through(self, places: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(K,) bool: whether the beams at and beside (K, 2) places went on behind them."""
-        off = places - self.origin
-        away_m = np.hypot(off[:, 0], off[:, 1])
-        first = self.bearings[0]
-        bearing = first + np.mod(np.arctan2(off[:, 1], off[:, 0]) - first, 2.0 * math.pi)
-        count = len(self.bearings)
-        right = np.searchsorted(self.bearings, bearing)
-        beside = (right[:, None] + np.array([-2, -1, 0, 1])) % count
-        beyond_m = self.free_m[beside].min(axis=1)
-        gap = np.abs(_wrapped(self.bearings[beside[:, 1:3]] - bearing[:, None])).max(axis=1)
-        is_looked_at = gap < 4.0 * (self.bearings[-1] - first) / max(count - 1, 1)
-        return np.asarray(is_looked_at & (beyond_m > away_m * (1.0 + _THROUGH_SHARE) + _THROUGH_M))
 
 
 @dataclass(slots=True)
@@ -99,6 +69,10 @@ class _Thing:
         self.hits += 1
         self.has_moved |= self.hits >= _SURE_HITS or math.dist(self.xy, self.first_xy) > _MOVED_M
 
+    @property
+    def is_sure(self) -> bool:
+        return self.has_moved and self.hits >= _HITS
+
     def as_obstacle(self) -> MovingObstacle:
         x, y = self.xy.tolist()
         vx, vy = self.velocity.tolist()
@@ -109,34 +83,38 @@ class MovingThings:
     """Follows what moves around one robot, scan by scan."""
 
     def __init__(self) -> None:
-        self._sights: deque[_Sight] = deque()
+        self._sights: deque[Sight] = deque()
         self._things: list[_Thing] = []
         self._count = 0
+        self._last_seen_s = -math.inf
 
     def forget(self) -> None:
         """The scans seen so far no longer lie where the pose says: a loop closure moved it."""
         self._sights.clear()
         self._things.clear()
 
-    def see(self, scan: Scan2D, pose: Pose2, twist: Twist2) -> tuple[MovingObstacle, ...]:
+    def see(self, sight: Sight, grid: OccupancyGrid) -> tuple[MovingObstacle, ...]:
         """What moves, as far as this scan and those before it tell.
 
         Args:
-            scan: the newest.
-            pose: of the robot at the scan's stamp, ``map`` frame.
-            twist: of the robot during the scan; its beams are put where they were measured.
+            sight: the newest scan.
+            grid: the map; what stands on its free floor was not there when it was drawn.
         """
-        sight = _sight_of(scan, pose, twist)
-        if sight is None:
-            return ()
-        groups = _groups(sight.points[self._is_new(sight)])
-        self._follow(groups, sight)
+        is_new = self._is_new(sight) | _is_on_free_floor(sight.points, grid)
+        self._follow(_groups(sight.points[is_new]), sight)
         self._sights.append(sight)
         while self._sights[0].stamp_s < sight.stamp_s - _LAGS_S[-1]:
             self._sights.popleft()
-        return tuple(thing.as_obstacle() for thing in self._things if thing.has_moved and thing.hits >= _HITS)
+        found = tuple(thing.as_obstacle() for thing in self._things if thing.is_sure)
+        if found:
+            self._last_seen_s = sight.stamp_s
+        return found
 
-    def _is_new(self, sight: _Sight) -> NDArray[np.bool_]:
+    def are_about(self, now_s: float) -> bool:
+        """Whether anyone has been seen in the last minute."""
+        return now_s - self._last_seen_s < _ABOUT_S
+
+    def _is_new(self, sight: Sight) -> NDArray[np.bool_]:
         new = np.zeros(len(sight.points), dtype=np.bool_)
         for lag_s in _LAGS_S:
             then_s = sight.stamp_s - lag_s
@@ -145,7 +123,7 @@ class MovingThings:
                 new |= old.sees_through(sight.points)
         return new
 
-    def _follow(self, groups: list[NDArray[np.float64]], sight: _Sight) -> None:
+    def _follow(self, groups: list[NDArray[np.float64]], sight: Sight) -> None:
         stamp_s = sight.stamp_s
         left = list(self._things)
         for group in groups:
@@ -170,7 +148,7 @@ class MovingThings:
         ]
 
 
-def _hold(thing: _Thing, sight: _Sight) -> None:
+def _hold(thing: _Thing, sight: Sight) -> None:
     """It gave no new returns: it pauses where it still gives any, else it is out of sight."""
     if not thing.has_moved or not len(sight.points):
         return
@@ -181,33 +159,8 @@ def _hold(thing: _Thing, sight: _Sight) -> None:
         thing.take(centre, float(np.hypot(*(near - centre).T).max()), sight.stamp_s)
 
 
-def _sight_of(scan: Scan2D, pose: Pose2, twist: Twist2) -> _Sight | None:
-    told = ~np.isnan(scan.ranges_m) & (scan.ranges_m >= scan.range_min_m)
-    if np.count_nonzero(told) < _FEWEST:
-        return None
-    times_s = scan.times_s
-    sensor = scan.T_base_sensor
-    yaws = pose.yaw_rad + twist.angular_rps * times_s
-    middle = pose.yaw_rad + 0.5 * twist.angular_rps * times_s
-    origins = np.column_stack(
-        (
-            pose.x
-            + twist.linear_mps * times_s * np.cos(middle)
-            + sensor.x * np.cos(yaws)
-            - sensor.y * np.sin(yaws),
-            pose.y
-            + twist.linear_mps * times_s * np.sin(middle)
-            + sensor.x * np.sin(yaws)
-            + sensor.y * np.cos(yaws),
-        )
-    )
-    bearings = yaws + sensor.yaw_rad + scan.angles_rad
-    ranges = np.where(told, np.minimum(scan.ranges_m, scan.range_max_m), 0.0).astype(np.float64)
-    hit = scan.is_return & (scan.ranges_m <= REACH_M)
-    along = np.column_stack((np.cos(bearings[hit]), np.sin(bearings[hit])))
-    points = origins[hit] + ranges[hit][:, None] * along
-    order = np.argsort(bearings)
-    return _Sight(scan.stamp_s, origins.mean(axis=0), bearings[order], ranges[order], points)
+def _is_on_free_floor(points: NDArray[np.float64], grid: OccupancyGrid) -> NDArray[np.bool_]:
+    return np.asarray(clearance_at(grid, points, 2.0 * _OFF_M) > _OFF_M)
 
 
 def _groups(points: NDArray[np.float64]) -> list[NDArray[np.float64]]:
@@ -226,7 +179,3 @@ def _groups(points: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         if len(group) >= _FEWEST and np.hypot(*np.ptp(group, axis=0)) <= _WIDEST_M:
             found.append(group)
     return found
-
-
-def _wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray((angles + math.pi) % (2.0 * math.pi) - math.pi)

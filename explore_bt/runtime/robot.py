@@ -22,13 +22,12 @@ from explore_bt.interfaces import (
     NodeState,
     RobotContext,
     RobotSnapshot,
-    Surroundings,
 )
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.legs import plan_through
-from explore_bt.runtime.moving_things import MovingThings
+from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.safety_gate import SafetyGate
@@ -93,7 +92,7 @@ class Robot:
         self._logged: set[tuple[str, str]] = set()
         self._health_news = HealthNews()
         self._gate_reason = ""
-        self._things = MovingThings()
+        self._people = People()
         self.moving: tuple[MovingObstacle, ...] = ()
 
     def setup(self) -> None:
@@ -339,9 +338,11 @@ class Robot:
         assert self._scan is not None
         estimate = self._estimate_of_scan(self._scan)
         if self.pilot.has_jumped(estimate):
-            self._things.forget()
-        self.moving = self._things.see(self._scan, estimate.T_map_base, self.pilot.motion.twist)
-        around = Surroundings(self._scan.stamp_s, self._seen_points(), self.slam.grid(), self.moving)
+            self._people.forget()
+        around = self._people.around(
+            self._scan, estimate.T_map_base, self.pilot.motion.twist, self._seen_points(), self.slam.grid()
+        )
+        self.moving = around.moving
         self.pilot.see(around, estimate)
 
     def _seen_points(self) -> NDArray[np.float64]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from explore_bt.interfaces import HeldBy, Surroundings
 from explore_bt.runtime.clearance_window import ClearanceWindow
 from explore_bt.runtime.way_to_rest import WayToRest, brake_velocities, way_to_rest
-from explore_bt.types import MotionLimits, MotionState, MovingObstacle, Pose2, Twist2
+from explore_bt.types import MotionLimits, MotionState, Pose2, Twist2
 
 __all__ = ["GateDecision", "SafetyGate"]
 
@@ -48,6 +48,12 @@ WALKING_MPS = 1.6
 AT_REST_MPS = 0.05
 """Below this the robot counts as standing: what walks into it then was not run into."""
 MOVING_MARGIN_M = 0.05
+BODY_M = 0.25
+"""Radius of who may stand unseen behind a corner."""
+CAUTIOUS_MPS = 0.12
+"""So slow the robot goes on, though someone might step out: else it would never pass a door."""
+BESIDE_M = 0.15
+"""Returns so near to what was seen of a moving thing are its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +82,7 @@ class SafetyGate:
         self._brake = _Brake(MotionState())
         self._window = ClearanceWindow(LOOK_AHEAD_M)
         self._is_held = False
-        self._moving: tuple[MovingObstacle, ...] = ()
+        self._around: Surroundings | None = None
         self._scans: deque[NDArray[np.float64]] = deque(maxlen=max(count for count, _ in VOTES))
 
     def see(self, surroundings: Surroundings, near: Pose2) -> None:
@@ -87,8 +93,10 @@ class SafetyGate:
             near: where the robot is; the map is looked at around it.
         """
         points = surroundings.points
-        self._moving = surroundings.moving
+        self._around = surroundings
         is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
+        for thing in surroundings.moving:  # it is kept clear of by itself, and will not be there for ever
+            is_near &= np.hypot(*(points - thing.xy).T) > thing.radius_m + BESIDE_M
         self._scans.append(np.ascontiguousarray(points[is_near]))
         self._window.cut(surroundings.grid, near, points)
 
@@ -112,7 +120,7 @@ class SafetyGate:
         way = way_to_rest(following, pose, motion, self._limits, dt_s)
         held_by, fault = HeldBy.OBSTACLE, self._fault_on_the_way(way, following)
         if not fault:
-            held_by, fault = HeldBy.SOMEONE, self._fault_by_moving(way, now_s)
+            held_by, fault = HeldBy.SOMEONE, self._fault_by_people(way, now_s)
         if fault:
             return GateDecision(self._next_of_brake(motion, dt_s), fault, held_by)
         self._brake = _Brake(following)
@@ -137,17 +145,30 @@ class SafetyGate:
         in_map = _shortfall(on_grid, self._radius_m, "obstacle or unknown space in the map")
         return in_map or self._fault_in_scans(ahead, following)
 
-    def _fault_by_moving(self, way: WayToRest, now_s: float) -> str:
-        is_fast = way.speeds_mps > AT_REST_MPS
-        drives = is_fast | np.concatenate(([False], is_fast[:-1]))  # until the first sample at rest
-        for thing in self._moving:
-            away_m = np.hypot(*(way.poses[drives, :2] - thing.xy).T) - thing.radius_m
-            walked_m = WALKING_MPS * (now_s + way.times_s[drives] - thing.stamp_s)
-            spare_m = away_m - walked_m - self._radius_m - MOVING_MARGIN_M
-            if spare_m.size and spare_m.min() < 0.0:
-                here_m = math.dist(thing.xy, way.poses[0, :2].tolist()) - thing.radius_m - self._radius_m
-                return f"someone {here_m:.1f} m away could be met before the robot stands"
-        return ""
+    def _fault_by_people(self, way: WayToRest, now_s: float) -> str:
+        around = self._around
+        if around is None:
+            return ""
+        here, ahead = way.poses[0, :2], way.poses[_until(way.speeds_mps, AT_REST_MPS), :2]
+        times_s = way.times_s[: len(ahead)] + now_s
+        for thing in around.moving:
+            away_m = np.hypot(*(ahead - thing.xy).T) - thing.radius_m - self._radius_m
+            spare_m = away_m - WALKING_MPS * (times_s - thing.stamp_s) - MOVING_MARGIN_M
+            here_m = math.dist(thing.xy, here.tolist()) - thing.radius_m - self._radius_m
+            end_m = math.dist(thing.xy, way.poses[-1, :2].tolist()) - thing.radius_m - self._radius_m
+            if (spare_m.size and spare_m.min() < 0.0) or end_m < min(here_m, MOVING_MARGIN_M):
+                return f"someone {max(here_m, 0.0):.1f} m away could be met before the robot stands"
+        return self._fault_by_hidden(way, now_s, around)
+
+    def _fault_by_hidden(self, way: WayToRest, now_s: float, around: Surroundings) -> str:
+        ahead = way.poses[_until(way.speeds_mps, CAUTIOUS_MPS)]
+        if not len(ahead) or not len(around.hidden):
+            return ""
+        away_m = _nearest_point_m(ahead, around.hidden) - BODY_M - self._radius_m
+        walked_m = WALKING_MPS * (now_s + way.times_s[: len(ahead)] - around.stamp_s)
+        if (away_m - walked_m).min() >= 0.0:
+            return ""
+        return "someone may step out before the robot is slow"
 
     def _fault_in_scans(self, ahead: NDArray[np.float64], following: MotionState) -> str:
         if not self._scans:
@@ -186,6 +207,12 @@ def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str,
     if worst < min(needed_m, here) or (here < needed_m and clearance_m[-1] < here + gain_m):
         return f"the stop would end {worst:.3f} m from an {obstacle}, needs {needed_m:.3f} m"
     return ""
+
+
+def _until(speeds_mps: NDArray[np.float64], slow_mps: float) -> slice:
+    """The samples of a way up to the first from which on it is slow; none if it is slow throughout."""
+    fast = np.flatnonzero(speeds_mps > slow_mps)
+    return slice(0, int(fast[-1]) + 2 if fast.size else 0)
 
 
 def _haste(speed_mps: float) -> float:

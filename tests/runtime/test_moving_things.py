@@ -8,13 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from explore_bt.runtime.moving_things import MovingThings
-from explore_bt.types import MovingObstacle, Pose2, Scan2D, Twist2
+from explore_bt.runtime.sight import Sight
+from explore_bt.types import UNKNOWN, MovingObstacle, OccupancyGrid, Pose2, Scan2D, Twist2
 
 ROOM = (-4.0, -3.0, 4.0, 3.0)
 PERIOD_S = 0.1
 RADIUS_M = 0.25
 BEAMS = 360
 ANGLES = -np.pi + np.arange(BEAMS) * 2.0 * np.pi / BEAMS
+UNKNOWN_FLOOR = OccupancyGrid(np.full((160, 200), UNKNOWN, dtype=np.int8), 0.05, (-5.0, -4.0))
 STILL, CENTRE = Twist2(), Pose2.identity()
 TIMES = (np.arange(BEAMS) + 1.0 - BEAMS) / BEAMS * PERIOD_S
 
@@ -58,7 +60,7 @@ class Scene:
         start: Pose2 = CENTRE,
     ) -> None:
         self._walkers, self._twist, self._start = walkers, twist, start
-        self._rng = np.random.default_rng(seed)
+        self._rng, self._grid = np.random.default_rng(seed), UNKNOWN_FLOOR
         self.things = MovingThings()
         self.time_s = 0.0
 
@@ -78,7 +80,9 @@ class Scene:
             ranges = np.where(ranges > 5.0, np.inf, ranges)
             ranges[self._rng.random(BEAMS) < 0.002] = np.nan
             scan = Scan2D(self.time_s, ANGLES, ranges.astype(np.float32), TIMES, 0.02, 5.0)
-            found = self.things.see(scan, driven(self._start, self._twist, self.time_s), self._twist)
+            sight = Sight.of(scan, driven(self._start, self._twist, self.time_s), self._twist)
+            assert sight is not None
+            found = self.things.see(sight, self._grid)
         return found
 
 
