@@ -1,4 +1,4 @@
-"""Options of the controller ``pursuit``."""
+"""Options of the controllers."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pydantic import Field
 from explore_bt.interfaces import PluginOptions
 from explore_bt.units import Acceleration, Angle, Duration, Length
 
-__all__ = ["PursuitOptions"]
+__all__ = ["FollowerOptions", "PursuitOptions"]
 
 
-class PursuitOptions(PluginOptions):
-    """Options of the controller ``pursuit``."""
+class FollowerOptions(PluginOptions):
+    """Options of every controller that follows a path."""
 
     position_tolerance: Length = Field(
         0.08, gt=0.02, description="how near the end of the path counts as arrived"
@@ -33,3 +33,7 @@ class PursuitOptions(PluginOptions):
     lateral_acceleration: Acceleration = Field(0.5, gt=0.0, description="greatest centripetal acceleration")
     off_path: Length = Field(0.5, gt=0.0, description="distance from the path at which it is given up")
     stuck_after: Duration = Field(5.0, gt=0.0, description="time without progress after which it is given up")
+
+
+class PursuitOptions(FollowerOptions):
+    """Options of the controller ``pursuit``."""
