@@ -16,7 +16,7 @@ class NoiseBank:
     """Sequences correlated in time, in pairs of opposite sign.
 
     Drawing 80 000 normal numbers takes longer than rolling the motions out. A window of the bank at a random
-    place, another one for each kind of velocity, combines to as many different samples as will ever be needed.
+    place, another one for each kind of velocity, combines to more different samples than are ever needed.
 
     Attributes:
         sequences: (2, K, B) float32: of linear velocity (m/s) and of turn rate (rad/s).

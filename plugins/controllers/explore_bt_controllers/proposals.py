@@ -10,32 +10,21 @@ from numpy.typing import NDArray
 
 from explore_bt_controllers.feedback import turn_rate
 from explore_bt_controllers.limiter import next_velocity
-from explore_bt_controllers.rollout import Bounds, Route, Start
+from explore_bt_controllers.rollout import World
 
 __all__ = ["propose"]
 
-_BESIDE = (0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5, 0.75, -0.75, 1.0, -1.0)
+_BESIDE = (0.0, 0.25, -0.25, 0.5, -0.5, 1.0, -1.0)
 """Offsets from the path as shares of the greatest one."""
 _SPEEDS = (1.0, 0.4)
 _turn_rate = njit(cache=True)(turn_rate)
 
 
-def propose(
-    start: Start,
-    bounds: Bounds,
-    route: Route,
-    step_s: float,
-    steps: int,
-    convergence_m: float,
-    widest_m: float,
-) -> NDArray[np.float32]:
+def propose(world: World, steps: int, convergence_m: float, widest_m: float) -> NDArray[np.float32]:
     """(2, K, P) float32, m/s and rad/s: velocities to ask for, step after step.
 
     Args:
-        start: see ``Start``.
-        bounds: see ``Bounds``.
-        route: see ``Route``.
-        step_s: seconds of each step.
+        world: what the motions will meet; only the path is looked at.
         steps: K.
         convergence_m: arc length over which an offset is taken up.
         widest_m: greatest offset from the path.
@@ -43,8 +32,8 @@ def propose(
     beside = widest_m * np.repeat(_BESIDE, len(_SPEEDS))
     shares = np.tile(_SPEEDS, len(_BESIDE))
     asked = np.zeros((2, steps, len(beside) + 2), dtype=np.float32)
-    _by_feedback(start, bounds, route, step_s, convergence_m, beside, shares, asked)
-    asked[0, :, -1] = bounds.lowest
+    _by_feedback(world.start, world.bounds, world.route, world.step_s, convergence_m, beside, shares, asked)
+    asked[0, :, -1] = world.bounds.lowest
     return asked
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from explore_bt_controllers.limiter import next_velocity
 
-__all__ = ["Bounds", "Field", "Prices", "Route", "Start", "costs_of"]
+__all__ = ["Bounds", "Field", "Prices", "Route", "Start", "World", "costs_of"]
 
 _BLOCK = 128  # samples rolled out together: their state stays in the nearest cache
 _DEVIATION_M = 0.15  # offset at which deviating costs half of its price
@@ -66,6 +66,8 @@ class Prices(NamedTuple):
     """What a second of each thing costs; distances in metres are counted from the centre of the robot.
 
     Attributes:
+        widest: offset from the path, metres.
+        hard, soft: room, metres.
         speed: standing still where the path is to be driven.
         deviation: being far from the path; half of it at 0.15 m.
         offset: each metre from the path.
@@ -77,41 +79,52 @@ class Prices(NamedTuple):
         touch: being nearer to an obstacle than ``hard``.
         depth: each metre nearer than that.
         near: being at the inner edge of the band around a moving obstacle.
-        widest, hard, soft: metres.
     """
 
-    speed: float
-    deviation: float
-    offset: float
-    beyond: float
-    heading: float
-    acceleration: float
-    turn_acceleration: float
-    reverse: float
-    room: float
-    touch: float
-    depth: float
-    near: float
     widest: float
     hard: float
     soft: float
+    speed: float = 2.0
+    deviation: float = 0.5
+    offset: float = 0.3
+    beyond: float = 20.0
+    heading: float = 0.3
+    acceleration: float = 0.1
+    turn_acceleration: float = 0.02
+    reverse: float = 2.0
+    room: float = 1.0
+    touch: float = 60.0
+    depth: float = 200.0
+    near: float = 2.0
+
+
+class World(NamedTuple):
+    """All that a sampled motion meets.
+
+    Attributes:
+        moving: (K, M, 4) float64, the moving obstacles after each step, see ``Nearby.moving_at``.
+        step_s: seconds of each of the K steps.
+    """
+
+    start: Start
+    bounds: Bounds
+    route: Route
+    field: Field
+    moving: NDArray[np.float64]
+    prices: Prices
+    step_s: float
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def costs_of(start, bounds, route, field, moving, prices, step_s, targets, noise, first_v, first_w, count):  # type: ignore[no-untyped-def]  # numba kernel
+def costs_of(world, targets, noise, first_v, first_w, count):  # type: ignore[no-untyped-def]  # numba kernel
     """Cost of each sampled motion.
 
     A sample asks for the velocities ``targets + noise`` step after step and gets what the limits of
-    velocity, acceleration and jerk leave of it, by the same law that limits the commands.
+    velocity, acceleration and jerk leave of it, by the same law that limits the commands. All samples of a
+    block take each step together, in loops short enough for the compiler to vectorise.
 
     Args:
-        start: see ``Start``.
-        bounds: see ``Bounds``.
-        route: see ``Route``.
-        field: see ``Field``.
-        moving: (K, M, 4) float64, each moving obstacle after each step, see ``Nearby.moving_at``.
-        prices: see ``Prices``.
-        step_s: seconds of each of the K steps.
+        world: see ``World``.
         targets: (2, K) float64, m/s and rad/s.
         noise: (2, K, B) float32, m/s and rad/s, a bank of sequences.
         first_v: sample n takes column ``first_v + n`` of the bank for its linear velocity;
@@ -121,6 +134,7 @@ def costs_of(start, bounds, route, field, moving, prices, step_s, targets, noise
     Returns:
         (N,) float64.
     """
+    start, bounds, route, field, moving, prices, step_s = world
     total = np.zeros(count)
     x, y, c, s = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
     v, a, w, b = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)

@@ -24,6 +24,7 @@ class SpeedAhead:
         self._footprint_m = footprint_radius_m
         self._made_for: tuple[MotionLimits, Leg] | None = None
         self._limits_mps = np.zeros(0)
+        self._room: tuple[Leg, NDArray[np.float64]] | None = None
 
     def limits_on(self, leg: Leg, limits: MotionLimits) -> NDArray[np.float64]:
         """(N,) float64 m/s: what bends and the room beside the footprint allow, sample by sample."""
@@ -31,7 +32,7 @@ class SpeedAhead:
             self._made_for = (limits, leg)
             self._limits_mps = np.minimum(
                 leg.speed_limits(limits, self._options.lateral_acceleration),
-                limits.speed_mps * self._ease(leg),
+                limits.speed_mps * self._ease(self.room_on(leg)),
             )
         return self._limits_mps
 
@@ -55,9 +56,18 @@ class SpeedAhead:
             )
         )
 
-    def _ease(self, leg: Leg) -> NDArray[np.float64]:
-        """(N,) share of full speed along a leg: less where little room is left beside the footprint."""
-        offsets = leg.points[:, None, :] - self._path.poses[None, :, :2]
-        nearest = np.argmin(np.einsum("ijk,ijk->ij", offsets, offsets), axis=1)
-        room_m = self._path.clearance_m[nearest] - self._footprint_m
+    def least_room(self, leg: Leg, along_m: float, ahead_m: float) -> float:
+        """Metres beside the footprint that the path leaves at its tightest within ``ahead_m``."""
+        return float(self.room_on(leg)[leg.index_at(along_m) : leg.index_at(along_m + ahead_m) + 1].min())
+
+    def room_on(self, leg: Leg) -> NDArray[np.float64]:
+        """(N,) metres beside the footprint that the path leaves along a leg."""
+        if self._room is None or self._room[0] is not leg:
+            offsets = leg.points[:, None, :] - self._path.poses[None, :, :2]
+            nearest = np.argmin(np.einsum("ijk,ijk->ij", offsets, offsets), axis=1)
+            self._room = (leg, self._path.clearance_m[nearest] - self._footprint_m)
+        return self._room[1]
+
+    def _ease(self, room_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Share of full speed: less where little room is left beside the footprint."""
         return np.clip(room_m / max(self._options.slow_below, 1e-6), _SLOWEST_SHARE, 1.0)
