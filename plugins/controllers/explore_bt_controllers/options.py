@@ -42,7 +42,7 @@ class PursuitOptions(FollowerOptions):
 class MppiOptions(FollowerOptions):
     """Options of the controller ``mppi``."""
 
-    off_path: Length = Field(1.3, gt=0.0, description="distance from the path at which it is given up")
+    off_path: Length = Field(1.6, gt=0.0, description="distance from the path at which it is given up")
     samples: int = Field(1000, ge=50, le=20_000, description="motions tried in each period")
     steps: int = Field(40, ge=5, le=200, description="steps of each motion")
     step_time: Duration = Field(0.08, gt=0.01, le=0.5, description="length of a step")

@@ -14,9 +14,8 @@ from explore_bt_controllers.rollout import World
 
 __all__ = ["propose"]
 
-_BESIDE = (0.0, 0.25, -0.25, 0.5, -0.5, 1.0, -1.0)
-"""Offsets from the path as shares of the greatest one."""
-_SPEEDS = (1.0, 0.4)
+_LINES = ((0.0, 1.0), (0.0, 0.4), (0.25, 1.0), (-0.25, 1.0), (0.5, 1.0), (-0.5, 1.0), (1.0, 0.7), (-1.0, 0.7))
+"""Offset from the path as a share of the greatest one, and share of the speed wanted there."""
 _turn_rate = njit(cache=True)(turn_rate)
 
 
@@ -29,9 +28,8 @@ def propose(world: World, steps: int, convergence_m: float, widest_m: float) -> 
         convergence_m: arc length over which an offset is taken up.
         widest_m: greatest offset from the path.
     """
-    beside = widest_m * np.repeat(_BESIDE, len(_SPEEDS))
-    shares = np.tile(_SPEEDS, len(_BESIDE))
-    asked = np.zeros((2, steps, len(beside) + 2), dtype=np.float32)
+    beside, shares = np.array(_LINES).T * ((widest_m,), (1.0,))
+    asked = np.zeros((2, steps, len(_LINES) + 2), dtype=np.float32)
     _by_feedback(world.start, world.bounds, world.route, world.step_s, convergence_m, beside, shares, asked)
     asked[0, :, -1] = world.bounds.lowest
     return asked

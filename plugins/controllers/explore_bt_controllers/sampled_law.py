@@ -69,7 +69,7 @@ class SampledLaw:
             if near.any():
                 away_m = near.argmax() * leg.spacing_m
                 return f"waiting for something that moves, on the path {away_m:.1f} m ahead"
-        near = self._nearby.room_at(ahead, *place.pose.xy) < self._least_room(place)
+        near = self._nearby.room_at(ahead, *place.pose.xy) < self._footprint_m + self._margins(place)[0]
         return f"something is on the path {near.argmax() * leg.spacing_m:.1f} m ahead" if near.any() else ""
 
     def _nominal(self, place: Place, world: World) -> NDArray[np.float64]:
@@ -108,7 +108,8 @@ class SampledLaw:
 
     def _world(self, place: Place, motion: MotionState, limits: MotionLimits) -> World:
         options = self._options
-        times_s = place.time_s + options.step_time * np.arange(1, options.steps + 1)
+        steps = np.arange(1, options.steps + 1, dtype=np.float64)
+        times_s = place.time_s + options.step_time * steps
         return World(
             _start_of(place, motion),
             self._bounds(limits),
@@ -146,15 +147,16 @@ class SampledLaw:
             limits.turn_jerk_rps3,
         )
 
-    def _least_room(self, place: Place) -> float:
-        """Metres from the centre: what is asked for, or what the path itself leaves where it is tighter."""
+    def _margins(self, place: Place) -> tuple[float, float]:
+        """Metres beside the footprint, needed and liked: what the path itself leaves where it is tighter."""
+        options = self._options
         planned_m = self._speeds.least_room(place.leg, place.along_m, _LOOK_M) - _SQUEEZE_M
-        return self._footprint_m + min(self._options.margin, max(planned_m, _LEAST_MARGIN_M))
+        needed_m = min(options.margin, max(planned_m, _LEAST_MARGIN_M))
+        return (needed_m, max(min(options.soft_margin, planned_m), needed_m + _SQUEEZE_M))
 
     def _prices(self, place: Place) -> Prices:
-        hard = self._least_room(place)
-        soft = self._footprint_m + max(self._options.soft_margin, self._options.margin + 0.01)
-        return Prices(widest=self._options.deviation, hard=hard, soft=soft)
+        needed_m, liked_m = self._margins(place)
+        return Prices(self._options.deviation, self._footprint_m + needed_m, self._footprint_m + liked_m)
 
 
 def _start_of(place: Place, motion: MotionState) -> Start:
