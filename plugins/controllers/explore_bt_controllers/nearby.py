@@ -15,7 +15,7 @@ from explore_bt_controllers.rollout import Field
 
 __all__ = ["Nearby"]
 
-_REACH_M = 2.4  # farther than any motion of three seconds
+_REACH_M = 2.4  # five seconds at 0.5 m/s; what is further is looked at in time
 _CELL_M = 0.04
 _COUNT = 120  # R: cells across the field
 _OF_IT_M = 0.15  # returns this far beyond the radius of a moving obstacle still are its own

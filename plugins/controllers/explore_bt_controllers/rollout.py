@@ -16,7 +16,7 @@ _BLOCK = 128  # samples rolled out together: their state stays in the nearest ca
 _DEVIATION_M = 0.15  # offset at which deviating costs half of its price
 _SLOW_MPS = 0.05  # places to be driven no faster are alike
 _LEAST_SHRINK = 0.3  # of 1 - curvature · offset: beyond it the projection would jump
-_AT_REST_SHARE = 0.3  # of the price of being touched
+_AT_REST = 0.3  # part of the price of being touched that is due at rest too
 
 
 class Start(NamedTuple):
@@ -260,4 +260,4 @@ def _charge_moving(cost, x, y, v, disc, prices, highest, size):  # type: ignore[
         spare = np.sqrt(dx * dx + dy * dy) - disc[2]
         close = min(max(1.0 - spare / disc[3], 0.0), 1.0)
         touch = prices.touch - prices.depth * spare if spare < 0.0 else 0.0
-        cost[n] += prices.near * close * close + touch * (_AT_REST_SHARE + abs(v[n]) / highest)
+        cost[n] += prices.near * close * close + touch * (_AT_REST + abs(v[n]) / highest)
