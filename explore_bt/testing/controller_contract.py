@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from explore_bt.interfaces import API_VERSION, Controller, ControlOutput, ControlStatus, RobotContext
 from explore_bt.types import Estimate, MotionLimits, MotionState, Path, Pose2, Twist2, way_along, wrap_angle
 
-__all__ = ["ControllerContract", "KinematicRobot", "cross_track_error", "path_through"]
+__all__ = ["ControllerContract", "KinematicRobot", "cross_track_error", "path_through", "require_limits"]
 
 LIMITS = MotionLimits()
 _PERIOD_S = 0.05
@@ -165,7 +165,7 @@ class ControllerContract(ABC):
         robot = KinematicRobot(Pose2(0.0, 0.0, yaw_rad))
         controller.follow(path_through(_BEND, final_yaw_rad=-1.0))
         robot.run(controller, 60.0)
-        _require_limits(robot.motions, LIMITS, [_PERIOD_S] * len(robot.motions))
+        require_limits(robot.motions, LIMITS, [_PERIOD_S] * len(robot.motions))
 
     @pytest.mark.parametrize("yaw_rad", [2.0, -3.0, 0.5])
     def test_a_path_of_one_pose_is_a_turn_in_place(self, controller: Controller, yaw_rad: float) -> None:
@@ -196,7 +196,7 @@ class ControllerContract(ABC):
         output = robot.run(controller, 3.0, until=lambda o: o.status is ControlStatus.IDLE)
         assert output.status is ControlStatus.IDLE, f"status is {output.status} three seconds after hold()"
         assert math.hypot(*_twist(robot)) < 1e-3, f"idle, but moving: {robot.motion.twist}"
-        _require_limits(robot.motions, LIMITS, [_PERIOD_S] * len(robot.motions))
+        require_limits(robot.motions, LIMITS, [_PERIOD_S] * len(robot.motions))
 
     def test_it_goes_on_from_what_was_really_sent(self, controller: Controller) -> None:
         """A brake comes in between; the next command starts from the brake's."""
@@ -212,7 +212,7 @@ class ControllerContract(ABC):
             robot.drive(Twist2(speed, 0.0), _PERIOD_S)
         braked = len(robot.motions)
         output = robot.run(controller, 60.0)
-        _require_limits(robot.motions[braked - 1 :], LIMITS, [_PERIOD_S] * (len(robot.motions) - braked + 1))
+        require_limits(robot.motions[braked - 1 :], LIMITS, [_PERIOD_S] * (len(robot.motions) - braked + 1))
         _require_arrival(robot, output, path)
 
     def test_a_robot_that_does_not_move_is_stuck(self, controller: Controller) -> None:
@@ -260,7 +260,7 @@ class ControllerContract(ABC):
         slowest = min(motion.twist.linear_mps for motion in robot.motions[before:])
         assert slowest > 0.25, f"it slowed to {slowest:.2f} m/s for a path that goes on straight ahead"
         _require_arrival(robot, robot.run(controller, 60.0), path)
-        _require_limits(robot.motions, LIMITS, [_PERIOD_S] * len(robot.motions))
+        require_limits(robot.motions, LIMITS, [_PERIOD_S] * len(robot.motions))
 
     def test_the_same_drive_twice_is_the_same(self) -> None:
         """No clock, no chance: two instances give equal commands."""
@@ -290,8 +290,12 @@ def _require_arrival(robot: KinematicRobot, output: ControlOutput, path: Path) -
     assert off <= 0.2, f"arrived, but {math.degrees(off):.0f}° off the final heading"
 
 
-def _require_limits(motions: list[MotionState], limits: MotionLimits, periods_s: list[float]) -> None:
-    """From rest, or from the first motion, which is taken as given."""
+def require_limits(motions: list[MotionState], limits: MotionLimits, periods_s: list[float]) -> None:
+    """Velocity, acceleration and jerk; from rest, or from the first motion, which is taken as given.
+
+    Raises:
+        AssertionError: names the limit, the step and the value.
+    """
     rows: list[tuple[str, str, float, Callable[[MotionState], float]]] = [
         ("speed", "m/s", limits.speed_mps, lambda m: m.twist.linear_mps),
         ("turn rate", "rad/s", limits.turn_rate_rps, lambda m: m.twist.angular_rps),

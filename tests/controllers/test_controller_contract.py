@@ -1,4 +1,4 @@
-from explore_bt_controllers import Pursuit
+from explore_bt_controllers import Mppi, Pursuit
 
 from explore_bt.interfaces import Controller
 from explore_bt.testing.controller_contract import ControllerContract
@@ -7,3 +7,8 @@ from explore_bt.testing.controller_contract import ControllerContract
 class TestPursuitContract(ControllerContract):
     def make(self) -> Controller:
         return Pursuit(Pursuit.Options())
+
+
+class TestMppiContract(ControllerContract):
+    def make(self) -> Controller:
+        return Mppi(Mppi.Options())

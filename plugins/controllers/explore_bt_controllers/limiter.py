@@ -12,7 +12,7 @@ import math
 
 from numba import njit
 
-__all__ = ["approach", "next_velocity"]
+__all__ = ["approach", "next_velocity", "within"]
 
 
 @njit(cache=True)
@@ -23,6 +23,13 @@ def approach(gap, dt, jerk):  # type: ignore[no-untyped-def]  # numba kernel
     """
     size = jerk * (math.sqrt(dt * dt + 2.0 * abs(gap) / jerk) - dt)
     return size if gap >= 0.0 else -size
+
+
+@njit(cache=True)
+def within(wanted, acceleration, dt, max_acceleration, jerk):  # type: ignore[no-untyped-def]  # numba kernel
+    """The acceleration nearest to the wanted one that its own limit allows, and before that the jerk."""
+    wanted = max(-max_acceleration, min(max_acceleration, wanted))
+    return max(acceleration - jerk * dt, min(acceleration + jerk * dt, wanted))
 
 
 @njit(cache=True)
@@ -48,8 +55,6 @@ def next_velocity(  # type: ignore[no-untyped-def]  # numba kernel
     gap = target - velocity - target_acceleration * dt
     wanted = target_acceleration + approach(gap, dt, jerk)
     wanted = max(approach(lowest - velocity, dt, jerk), min(approach(highest - velocity, dt, jerk), wanted))
-    wanted = max(-max_acceleration, min(max_acceleration, wanted))
-    wanted = max(acceleration - jerk * dt, min(acceleration + jerk * dt, wanted))
-    after = velocity + wanted * dt
+    after = velocity + within(wanted, acceleration, dt, max_acceleration, jerk) * dt
     # the approach halves its number of digits each period; end it where it no longer means anything
     return target if abs(after - target) < 1e-9 else after

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from explore_bt_controllers.limiter import approach
+from explore_bt_controllers.limiter import approach, within
 
 __all__ = ["fastest_velocity"]
 
@@ -57,8 +57,7 @@ def fastest_velocity(  # type: ignore[no-untyped-def]  # numba kernel
 @njit(cache=True)
 def _brake(velocity, acceleration, dt, max_acceleration, jerk):  # type: ignore[no-untyped-def]  # numba kernel
     """The strongest acceleration towards rest that does not pass it."""
-    wanted = max(-max_acceleration, min(max_acceleration, approach(-velocity, dt, jerk)))
-    return max(acceleration - jerk * dt, min(acceleration + jerk * dt, wanted))
+    return within(approach(-velocity, dt, jerk), acceleration, dt, max_acceleration, jerk)
 
 
 @njit(cache=True)

@@ -10,13 +10,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from explore_bt.types import MotionLimits, way_along
+from explore_bt.types import MotionLimits, Pose2, way_along
 
 __all__ = ["SPACING_M", "Leg", "legs_of", "project"]
 
 SPACING_M = 0.02
 _CLOSE_M = 0.03  # points nearer than this say nothing about direction
 _WINDOW = 7  # samples of the running mean over headings, odd
+_BEHIND_M, _AHEAD_M = 0.2, 0.4  # near where the robot was
+_HEADING_WEIGHT_M = 0.1
 _TURN_RESERVE = 0.85  # share of the angular limits that the path itself may use; feedback has the rest
 
 
@@ -42,6 +44,29 @@ class Leg:
     def length_m(self) -> float:
         """Arc length."""
         return (len(self.points) - 1) * self.spacing_m
+
+    def index_at(self, along_m: float) -> int:
+        """The last sample not beyond an arc length."""
+        return min(max(int(along_m / self.spacing_m), 0), len(self.points) - 1)
+
+    def project_near(self, pose: Pose2, along_m: float) -> tuple[float, float, float, float]:
+        """``project_between`` from a little behind an arc length to a little ahead of it."""
+        return self.project_between(pose, along_m - _BEHIND_M, along_m + _AHEAD_M)
+
+    def project_between(self, pose: Pose2, low_m: float, high_m: float) -> tuple[float, float, float, float]:
+        """The place nearest to a pose between two arc lengths; see ``project``."""
+        along, lateral, error, away = project(
+            self.points,
+            self.heading_rad,
+            self.spacing_m,
+            pose.x,
+            pose.y,
+            pose.yaw_rad,
+            low_m,
+            high_m,
+            _HEADING_WEIGHT_M,
+        )
+        return (along, lateral, error, away)
 
     def speed_limits(self, limits: MotionLimits, lateral_acceleration_mps2: float) -> NDArray[np.float64]:
         """(N,) float64 m/s: what curvature and its changes allow, sample by sample."""
