@@ -152,14 +152,17 @@ class DriveTo(Leaf):
 
     def _plan_around(self) -> Status:
         """Another plan; where it has become a detour the tree decides anew, if that is asked for."""
+        left_m = self._left_m()
+        status = self._plan()
+        if status is not Status.RUNNING or self._path is None or self.look_again is None:
+            return status
+        more_m = self._path.length_m - left_m
+        return self._stop_here("before a detour") if more_m > _DETOUR_M else status
+
+    def _left_m(self) -> float:
         assert self._path is not None
         nearest = _nearest_pose(self._path, self.robot.estimate().T_map_base)
-        left_m = float(way_along(self._path.poses[nearest:])[-1])
-        status = self._plan()
-        more_m = self._path.length_m - left_m
-        if status is Status.RUNNING and self.look_again is not None and more_m > _DETOUR_M:
-            return self._stop_here("before a detour")
-        return status
+        return float(way_along(self._path.poses[nearest:])[-1])
 
     def _plan_after_hold(self, reason: str) -> Status:
         """Another plan; from the second hold on without the place ahead, which is then too tight."""

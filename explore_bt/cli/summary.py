@@ -43,6 +43,8 @@ def _figures(result: Result) -> list[str]:
     figures += [f"{result.path_length_m:.1f} m", duration(result.mission_time_s)]
     if result.contacts is not None:
         figures.append(count(result.contacts, "contact"))
+    if result.touched_by_people:
+        figures.append(f"touched by people: {result.touched_by_people}")
     if result.min_clearance_m is not None:
         figures.append(f"closest {result.min_clearance_m:.2f} m")
     return [*figures, _home(result.distance_to_home_m)]

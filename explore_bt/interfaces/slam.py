@@ -37,7 +37,10 @@ class Slam(Plugin):
 
     @abstractmethod
     def estimate(self) -> Estimate:
-        """The newest pose in ``map``, with covariance and health. Cheap."""
+        """The newest pose in ``map``, with covariance and health. Cheap.
+
+        Late is fine, and made up for from the commands; more than a second late holds the robot.
+        """
 
     @abstractmethod
     def grid(self) -> OccupancyGrid:

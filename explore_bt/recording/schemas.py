@@ -106,6 +106,7 @@ _SCHEMAS: Mapping[str, _Schema] = {
         distance_m=_NUMBER,
         coverage=_MAYBE,
         contacts=_MAYBE,
+        touched_by_people=_MAYBE,
         clearance_m=_MAYBE,
         min_clearance_m=_MAYBE,
         mean_clearance_m=_MAYBE,

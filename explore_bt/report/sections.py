@@ -52,10 +52,11 @@ def _section(title: str, content: str, note: str = "") -> str:
 def tiles(result: Result) -> str:
     """The figures people ask for first."""
     contacts = "–" if result.contacts is None else str(result.contacts)
+    touches = result.touched_by_people
     shown = [
         ("mapped", percent(result.coverage), "of the reachable floor"),
         ("driven", length(result.path_length_m), f"in {duration(result.mission_time_s)}"),
-        ("contacts", contacts, "with obstacles"),
+        ("contacts", contacts, f"touched by people: {touches}" if touches else "with obstacles"),
         ("closest", length(result.min_clearance_m), f"mean {length(result.mean_clearance_m)}"),
         ("pose error", length(result.ate_rmse_m), "of the trajectory, rmse"),
         ("home", length(result.distance_to_home_m), "from the start"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from explore_bt.errors import UserError
@@ -96,10 +96,9 @@ def _run_info(mission: Mission, robots: Sequence[Robot], seed: int, out: Path) -
 def _result(
     mission: Mission, robots: Sequence[Robot], runner: Runner, seed: int, wall_time_s: float
 ) -> Result:
-    """Contacts and closest place of all robots; the other figures are the first one's."""
+    """Contacts, touches and closest place of all robots; the other figures are the first one's."""
     robot = robots[0]
     scores = [each.scores.score() for each in robots]
-    contacts = [each.contacts for each in scores if each.contacts is not None]
     closest_m = [each.min_clearance_m for each in scores if each.min_clearance_m is not None]
     score = scores[0]
     left_open = robot.blackboard.get(LEFT_OPEN_KEY, ())
@@ -108,7 +107,8 @@ def _result(
         reason=runner.reason,
         mission=mission.name,
         coverage=score.coverage,
-        contacts=sum(contacts) if contacts else None,
+        contacts=_sum_of_known(each.contacts for each in scores),
+        touched_by_people=_sum_of_known(each.touched_by_people for each in scores),
         ate_rmse_m=robot.scores.ate_rmse_m(robot.trajectory()),
         path_length_m=score.distance_m,
         mission_time_s=runner.now_s,
@@ -122,6 +122,11 @@ def _result(
         left_open=tuple(str(sentence) for sentence in left_open) if isinstance(left_open, tuple) else (),
         slam=dict(robot.slam.figures()),
     )
+
+
+def _sum_of_known(counts: Iterable[int | None]) -> int | None:
+    known = [count for count in counts if count is not None]
+    return sum(known) if known else None
 
 
 def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Path) -> None:

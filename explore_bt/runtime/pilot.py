@@ -13,6 +13,8 @@ __all__ = ["Pilot"]
 
 STALE_SCAN_S = 0.5
 """A scan older than this is no ground to drive on: five missed sweeps of a 10 Hz lidar."""
+STALE_ESTIMATE_S = 1.0
+"""An older one says little of here and now: the predictor knows the commands of two seconds only."""
 JUMP_M = 0.03
 JUMP_RAD = math.radians(3.0)
 """More than a body strays from its commands between two scans: the estimate was corrected."""
@@ -129,4 +131,6 @@ def _unfit_to_drive(estimate: Estimate, scan: Scan2D | None, now_s: float) -> st
         return "no beam of the newest scan is valid"
     if (age_s := now_s - scan.stamp_s) > STALE_SCAN_S:
         return f"the newest scan is {age_s:.1f} s old"
+    if (age_s := now_s - estimate.stamp_s) > STALE_ESTIMATE_S:
+        return f"the newest estimate is {age_s:.1f} s old"
     return ""

@@ -67,6 +67,7 @@ class Scorekeeper:
             distance_m=self._distance_m,
             coverage=self._coverage,
             contacts=self._truth.contacts() if self._truth else None,
+            touched_by_people=self._truth.touched_by_people() if self._truth else None,
             clearance_m=self._clearance_m,
             min_clearance_m=self._min_clearance_m,
             mean_clearance_m=mean_m,

@@ -25,7 +25,8 @@ class Score:
     Attributes:
         distance_m: driven so far, by the estimate.
         coverage: share [0, 1] of the reachable observable floor that is mapped free.
-        contacts: separate touches of an obstacle.
+        contacts: separate touches of an obstacle, or of somebody while the robot moved.
+        touched_by_people: separate touches by somebody while it stood.
         clearance_m: from the robot's **centre** to the nearest obstacle, now.
         min_clearance_m, mean_clearance_m: the same over the run (mean over distance driven).
         ate_rmse_m: root mean square of the position error after the best rigid alignment.
@@ -34,6 +35,7 @@ class Score:
     distance_m: float = 0.0
     coverage: float | None = None
     contacts: int | None = None
+    touched_by_people: int | None = field(default=None, kw_only=True)
     clearance_m: float | None = None
     min_clearance_m: float | None = None
     mean_clearance_m: float | None = None
@@ -56,6 +58,7 @@ class Result:
     mission: str
     coverage: float | None
     contacts: int | None
+    touched_by_people: int | None = field(default=None, kw_only=True)
     ate_rmse_m: float | None
     path_length_m: float
     mission_time_s: float

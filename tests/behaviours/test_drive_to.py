@@ -165,6 +165,19 @@ def test_a_cut_way_with_a_long_one_around_lets_the_tree_decide_anew(
     assert leaf.status is status
 
 
+def test_a_way_that_someone_cuts_is_waited_for_even_if_it_was_the_only_one() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot, look_again=1.0)
+    robot.refusal, robot.moving = NoPath("no passage wide enough"), (SOMEONE_NEAR,)
+    cells = robot.grid.cells.copy()
+    cells[robot.grid.cell_of(2.0, 0.0)] = OCCUPIED
+    robot.grid = OccupancyGrid(cells, robot.grid.resolution_m, robot.grid.origin_xy, revision=1)
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING
+    assert leaf.feedback_message == "waiting for someone to pass"
+    assert robot.pilot.holds == 1
+
+
 def test_places_on_the_way_are_passed_in_their_order_and_once() -> None:
     robot = FakeRobot(open_floor())
     asked: list[tuple[tuple[float, float], ...]] = []

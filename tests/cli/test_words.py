@@ -65,6 +65,12 @@ def test_the_summary_says_how_it_ended_and_where_the_files_are(tmp_path):
     ]
 
 
+@pytest.mark.parametrize(("touches", "said"), [(None, False), (0, False), (2, True)])
+def test_the_summary_tells_touches_by_people_if_there_were_any(tmp_path, touches, said):
+    figures = summary_lines(result(touched_by_people=touches), tmp_path)[0][1]
+    assert (" · 0 contacts · touched by people: 2 · " in figures) == said
+
+
 def test_the_summary_leaves_out_what_nobody_knows(tmp_path):
     unknown = result(
         outcome=Outcome.BUDGET,

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from explore_bt.interfaces import Sink
+from explore_bt.interfaces import Event, PluginOptions, RunInfo, Sink, TickSnapshot
 from explore_bt.mission import load_mission
 from explore_bt.plugin import Registry, load_plugins
 from explore_bt.runtime import StopFlag, run_mission
@@ -12,6 +12,28 @@ from explore_bt.types import Result
 MISSIONS = Path(__file__).resolve().parents[2] / "missions"
 
 RunMission = Callable[..., Result]
+
+
+class Watcher(Sink):
+    """Keeps all that observers are shown."""
+
+    name = "watcher"
+    api_version = 1
+
+    def __init__(self) -> None:
+        super().__init__(PluginOptions())
+        self.events: list[Event] = []
+        self.ticks: list[TickSnapshot] = []
+
+    def open(self, run: RunInfo) -> None: ...
+
+    def on_tick(self, tick: TickSnapshot) -> None:
+        self.ticks.append(tick)
+
+    def on_event(self, event: Event) -> None:
+        self.events.append(event)
+
+    def close(self, result: Result | None) -> None: ...
 
 
 @pytest.fixture

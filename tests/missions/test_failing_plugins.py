@@ -6,44 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from explore_bt.interfaces import (
-    Controller,
-    Driver,
-    Event,
-    Planner,
-    PluginOptions,
-    RunInfo,
-    Sink,
-    Slam,
-    TickSnapshot,
-)
+from explore_bt.interfaces import Controller, Driver, Planner, Slam, TickSnapshot
 from explore_bt.mission import load_mission
 from explore_bt.plugin import Registry, load_plugins
 from explore_bt.runtime import StopFlag, run_mission
 from explore_bt.tree import Leaf
 from explore_bt.types import Health, Measurement, Outcome, Result, Scan2D
 
-from .conftest import MISSIONS, RunMission
-
-
-class Watcher(Sink):
-    name = "watcher"
-    api_version = 1
-
-    def __init__(self) -> None:
-        super().__init__(PluginOptions())
-        self.events: list[Event] = []
-        self.ticks: list[TickSnapshot] = []
-
-    def open(self, run: RunInfo) -> None: ...
-
-    def on_tick(self, tick: TickSnapshot) -> None:
-        self.ticks.append(tick)
-
-    def on_event(self, event: Event) -> None:
-        self.events.append(event)
-
-    def close(self, result: Result | None) -> None: ...
+from .conftest import MISSIONS, RunMission, Watcher
 
 
 def after(count: int, method: Callable[..., object]) -> Callable[..., object]:

@@ -25,6 +25,7 @@ FIGURES = {
     "reason",
     "coverage",
     "contacts",
+    "touched_by_people",
     "ate_rmse_m",
     "path_length_m",
     "mission_time_s",
@@ -155,6 +156,23 @@ def test_the_stop_flag_brakes_within_a_tick_and_keeps_the_results(run: RunMissio
     assert all(later <= earlier + 0.03 for earlier, later in pairwise(watcher.speeds[1:]))
     assert result.mission_time_s < 12.0
     assert (tmp_path / "run/map.pgm").stat().st_size > 0
+
+
+def test_who_walks_into_a_robot_that_stands_is_counted_apart_from_contacts(
+    run: RunMission, tmp_path: Path
+) -> None:
+    (tmp_path / "world.yaml").write_text(
+        "format: explore-bt-world/1\nstart: [2 m, 1.5 m, 0]\nrooms: [{name: hall, box: [0, 0, 4, 3]}]\n"
+        "people: [{name: ada, route: [[0.5, 1.5], [3.5, 1.5]], pause: 1 s}]\n"
+    )
+    (tmp_path / "mission.yaml").write_text(
+        "format: explore-bt/1\nrobots:\n  robot: {driver: {use: sim2d, world: world.yaml},"
+        " slam: ground_truth, planner: skeleton, controller: pursuit}\n"
+        "tree: {wait: {duration: 3.2 s}}\n"
+    )
+    result = run(tmp_path / "mission.yaml")
+    assert (result.contacts, result.touched_by_people) == (0, 1)
+    assert json.loads((tmp_path / "run/result.json").read_text())["touched_by_people"] == 1
 
 
 def test_a_spent_time_budget_ends_the_mission_at_rest(run: RunMission) -> None:

@@ -204,6 +204,16 @@ def test_what_nobody_knows_is_left_out(flat_drive, tmp_path):
     assert all(value is not None for value in data_of(page)["robots"][0]["clearance"])  # taken from the map
 
 
+def test_touches_by_people_stand_beside_the_contacts(flat_drive, tmp_path):
+    told = {}
+    for touches in (0, 2):
+        result = replace(flat_drive.result, touched_by_people=touches)
+        text = "".join(checked(write_report(replace(flat_drive, result=result), tmp_path)).text)
+        told[touches] = text.partition("Why it stopped")[0]
+    assert "touched by people: 2" in told[2]
+    assert "touched by people" not in told[0]
+
+
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_a_run_that_ended_at_once_still_has_a_report(flat_drive, tmp_path, count):
     checked(write_report(replace(flat_drive, ticks=flat_drive.ticks[:count]), tmp_path))

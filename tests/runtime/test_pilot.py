@@ -4,7 +4,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, Surroundings
+from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, HeldBy, Surroundings
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.testing.fake_robot import full_circle_scan, open_floor
@@ -58,3 +58,12 @@ def test_scans_from_before_a_corrected_pose_are_forgotten(pilot: Pilot, jump: Po
     estimate = show(pilot, 1.5, jump, np.zeros((0, 2)))
     pilot.step(estimate, replace(full_circle_scan(), stamp_s=1.5), 1.5, DT)
     assert pilot.gate_reason == ""
+
+
+@pytest.mark.parametrize(("age_s", "fault"), [(0.3, ""), (1.2, "the newest estimate is 1.2 s old")])
+def test_an_estimate_may_be_late_but_not_old(pilot: Pilot, age_s: float, fault: str) -> None:
+    estimate = show(pilot, 5.0, Pose2(0.0, 0.0, 0.0), np.zeros((0, 2)))
+    now_s = 5.0 + age_s
+    pilot.step(estimate, replace(full_circle_scan(), stamp_s=now_s), now_s, DT)
+    assert pilot.gate_reason == fault
+    assert pilot.held_by is (HeldBy.SENSES if fault else HeldBy.NOTHING)
