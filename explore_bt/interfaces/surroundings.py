@@ -21,7 +21,8 @@ class Surroundings:
         points: (N, 2) float64, metres: its returns, also those of moving things.
         grid: the newest map; places that are out of the lidar's sight are known to it alone.
         moving: what moves nearby.
-        hidden: (K, 2) float64, metres: the edges of where someone may stand unseen; none while nobody is about.
+        hidden: (K, 2) float64, metres: the edge of where someone may stand unseen; none while nobody
+            is about.
     """
 
     stamp_s: float

@@ -21,7 +21,7 @@ from explore_bt.types import MovingObstacle, OccupancyGrid
 
 __all__ = ["MovingThings"]
 
-_LAGS_S = (0.3, 0.5, 0.7, 1.0, 1.3)
+_LAGS_S = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.3)
 """How long ago places are asked for; a slow thing needs long to leave its own."""
 _TOGETHER_M = 0.3
 _FEWEST = 3
@@ -30,16 +30,18 @@ _SAME_M = 0.45
 """So far from where it is expected a thing is the same."""
 _GAIN, _RATE_GAIN = 0.5, 0.2
 """Of the filter for place and velocity: half of a surprise is believed at once."""
-_HITS, _SURE_HITS = 2, 5
-_MOVED_M = 0.25
-"""What came less far than this, and in fewer scans, may be the flicker of an edge."""
+_HITS = 2
+_SURELY_M = 0.6
+_MOVED_M, _LEAST_MPS = 0.15, 0.15
+"""What came less far than this, or slower, may be the flicker of an edge, or a thin leg seen at last."""
 _HOLD_S = 5.0
 """What has paused for so long is left to the map."""
-_LOST_S = 0.5
+_LOST_S = 1.0
 _ABOUT_S = 60.0
 _OFF_M = 0.15
 """A return so far from everything that the map does not call free is no wall drawn a little thin."""
 _LEAST_RADIUS_M = 0.15
+_STEP_M = 0.1
 
 
 @dataclass(slots=True)
@@ -52,7 +54,9 @@ class _Thing:
     radius_m: float
     stamp_s: float
     first_xy: NDArray[np.float64]
+    first_s: float
     moved_s: float
+    walks: bool
     hits: int = 1
     has_moved: bool = False
 
@@ -67,11 +71,12 @@ class _Thing:
         self.radius_m = max(radius_m, 0.8 * self.radius_m)
         self.stamp_s = stamp_s
         self.hits += 1
-        self.has_moved |= self.hits >= _SURE_HITS or math.dist(self.xy, self.first_xy) > _MOVED_M
+        moved_m = math.dist(centre, self.first_xy)
+        self.has_moved |= moved_m > max(_MOVED_M, _LEAST_MPS * (stamp_s - self.first_s))
 
     @property
     def is_sure(self) -> bool:
-        return self.has_moved and self.hits >= _HITS
+        return self.walks and self.has_moved and self.hits >= _HITS
 
     def as_obstacle(self) -> MovingObstacle:
         x, y = self.xy.tolist()
@@ -100,13 +105,14 @@ class MovingThings:
             sight: the newest scan.
             grid: the map; what stands on its free floor was not there when it was drawn.
         """
-        is_new = self._is_new(sight) | _is_on_free_floor(sight.points, grid)
-        self._follow(_groups(sight.points[is_new]), sight)
+        is_seen_through = self._was_seen_through(sight)
+        is_new = np.flatnonzero(is_seen_through | _is_on_free_floor(sight.points, grid))
+        self._follow([is_new[group] for group in _groups(sight.points[is_new])], is_seen_through, sight)
         self._sights.append(sight)
         while self._sights[0].stamp_s < sight.stamp_s - _LAGS_S[-1]:
             self._sights.popleft()
         found = tuple(thing.as_obstacle() for thing in self._things if thing.is_sure)
-        if found:
+        if any(thing.is_sure and math.dist(thing.xy, thing.first_xy) > _SURELY_M for thing in self._things):
             self._last_seen_s = sight.stamp_s
         return found
 
@@ -114,7 +120,7 @@ class MovingThings:
         """Whether anyone has been seen in the last minute."""
         return now_s - self._last_seen_s < _ABOUT_S
 
-    def _is_new(self, sight: Sight) -> NDArray[np.bool_]:
+    def _was_seen_through(self, sight: Sight) -> NDArray[np.bool_]:
         new = np.zeros(len(sight.points), dtype=np.bool_)
         for lag_s in _LAGS_S:
             then_s = sight.stamp_s - lag_s
@@ -123,21 +129,27 @@ class MovingThings:
                 new |= old.sees_through(sight.points)
         return new
 
-    def _follow(self, groups: list[NDArray[np.float64]], sight: Sight) -> None:
+    def _follow(
+        self, groups: list[NDArray[np.int64]], is_seen_through: NDArray[np.bool_], sight: Sight
+    ) -> None:
         stamp_s = sight.stamp_s
         left = list(self._things)
-        for group in groups:
+        for members in groups:
+            group, walks = sight.points[members], int(is_seen_through[members].sum()) >= _FEWEST
             centre = group.mean(axis=0)
             radius_m = max(float(np.hypot(*(group - centre).T).max()), _LEAST_RADIUS_M)
             same = min(left, key=lambda thing: math.dist(thing.predicted(stamp_s), centre), default=None)
             if same is not None and math.dist(same.predicted(stamp_s), centre) <= _SAME_M:
                 same.take(centre, radius_m, stamp_s)
                 same.moved_s = stamp_s
+                same.walks |= walks
                 left.remove(same)
             else:
                 self._count += 1
                 still = np.zeros(2)
-                self._things.append(_Thing(self._count, centre, still, radius_m, stamp_s, centre, stamp_s))
+                self._things.append(
+                    _Thing(self._count, centre, still, radius_m, stamp_s, centre, stamp_s, stamp_s, walks)
+                )
         for thing in left:
             _hold(thing, sight)
         self._things = [
@@ -150,20 +162,19 @@ class MovingThings:
 
 def _hold(thing: _Thing, sight: Sight) -> None:
     """It gave no new returns: it pauses where it still gives any, else it is out of sight."""
-    if not thing.has_moved or not len(sight.points):
+    if not thing.is_sure or not len(sight.points):
         return
     expected = thing.predicted(sight.stamp_s)
-    near = sight.points[np.hypot(*(sight.points - expected).T) <= thing.radius_m + 0.1]
+    near = sight.points[np.hypot(*(sight.points - expected).T) <= thing.radius_m + _STEP_M]
     if len(near) >= _FEWEST:
-        centre = near.mean(axis=0)
-        thing.take(centre, float(np.hypot(*(near - centre).T).max()), sight.stamp_s)
+        thing.take(near.mean(axis=0), thing.radius_m, sight.stamp_s)  # a wall beside it must not widen it
 
 
 def _is_on_free_floor(points: NDArray[np.float64], grid: OccupancyGrid) -> NDArray[np.bool_]:
     return np.asarray(clearance_at(grid, points, 2.0 * _OFF_M) > _OFF_M)
 
 
-def _groups(points: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+def _groups(points: NDArray[np.float64]) -> list[NDArray[np.int64]]:
     """Points chained by less than ``_TOGETHER_M``; scraps and what is too wide for one thing are left out."""
     left = list(range(len(points)))
     found = []
@@ -175,7 +186,6 @@ def _groups(points: NDArray[np.float64]) -> list[NDArray[np.float64]]:
             near = [k for k in left if math.dist(points[k], points[at]) < _TOGETHER_M]
             left = [k for k in left if k not in near]
             edge += near
-        group = points[members]
-        if len(group) >= _FEWEST and np.hypot(*np.ptp(group, axis=0)) <= _WIDEST_M:
-            found.append(group)
+        if len(members) >= _FEWEST and np.hypot(*np.ptp(points[members], axis=0)) <= _WIDEST_M:
+            found.append(np.array(members))
     return found

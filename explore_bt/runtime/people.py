@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import Surroundings
-from explore_bt.runtime.hidden import hidden_places
+from explore_bt.runtime.hidden import HiddenFloor
 from explore_bt.runtime.moving_things import MovingThings
 from explore_bt.runtime.sight import Sight
 from explore_bt.types import OccupancyGrid, Pose2, Scan2D, Twist2
@@ -20,7 +20,7 @@ class People:
     """Watches out for people; where they may hide matters only while some are about."""
 
     def __init__(self) -> None:
-        self._things = MovingThings()
+        self._things, self._floor = MovingThings(), HiddenFloor()
 
     def forget(self) -> None:
         """The scans seen so far no longer lie where the pose says: a loop closure moved it."""
@@ -42,5 +42,5 @@ class People:
         if sight is None:
             return Surroundings(scan.stamp_s, points, grid)
         moving = self._things.see(sight, grid)
-        hidden = hidden_places(grid, sight) if self._things.are_about(scan.stamp_s) else _NOWHERE
+        hidden = self._floor.see(grid, sight) if self._things.are_about(scan.stamp_s) else _NOWHERE
         return Surroundings(scan.stamp_s, points, grid, moving, hidden)

@@ -45,12 +45,12 @@ MOST_BEND = 4.0
 """1/m: a robot that bends more sharply is turning on the spot."""
 WALKING_MPS = 1.6
 """How fast a moving thing may come, from any side: a brisk walk."""
-AT_REST_MPS = 0.05
+AT_REST_MPS = 0.03
 """Below this the robot counts as standing: what walks into it then was not run into."""
 MOVING_MARGIN_M = 0.05
 BODY_M = 0.25
 """Radius of who may stand unseen behind a corner."""
-CAUTIOUS_MPS = 0.12
+CAUTIOUS_MPS = 0.15
 """So slow the robot goes on, though someone might step out: else it would never pass a door."""
 BESIDE_M = 0.15
 """Returns so near to what was seen of a moving thing are its own."""
