@@ -47,9 +47,9 @@ class FindView(Search):
     waypoint makes turning back cost (4), a place looked from in vain is not visited again (5), and every
     place counts by the new area in view (6). What the paper leaves open, which heading and where to go when
     none is left, is answered by a short tour through the few places that together show what is still to be
-    seen; ``rank: gain`` takes the place of greatest gain · exp(−λ travel) instead (González-Baños & Latombe,
-    2002). Views that lie one behind another are one run: its last is the goal, the others are passed on the
-    way (``detour``). A run is kept unless another tour is clearly better.
+    seen, led by the one of greatest gain · exp(−λ travel) (González-Baños & Latombe, 2002); ``rank: gain``
+    takes that one alone. Views that lie one behind another are one run: its last is the goal, the others are
+    passed on the way (``detour``). A run is kept unless another tour is clearly better.
     What other robots are about to see is left to them while there is anything else.
     SUCCESS with the place in ``goal``; FAILURE once nothing of use is left in reach, with what stays open and
     why in ``left_open``.
@@ -75,7 +75,10 @@ class FindView(Search):
         Length, default=1.0, ge=0.0, doc="how much shorter a tour has to be to give up the present goal"
     )
     detour: Input[float] = Input(
-        Length, default=0.5, ge=0.0, doc="what passing places may add to the way before one is a goal itself"
+        Length, default=2.0, ge=0.0, doc="what passing places may add to the way before one is a goal itself"
+    )
+    aside: Input[float] = Input(
+        Length, default=2.0, ge=0.0, doc="what they may add to the way to the most promising place"
     )
     haste: Input[float] = Input(
         float, default=3.0, ge=0.0, doc="0: the shortest tour; more: what shows much comes early"
@@ -90,7 +93,9 @@ class FindView(Search):
         le=0.1,
         doc="share of the known floor that may be left unseen in scraps of less than 0.5 m²",
     )
-    decay: Input[float] = Input(float, default=0.2, ge=0.0, doc="λ of rank gain, per metre")
+    decay: Input[float] = Input(
+        float, default=0.2, ge=0.0, doc="λ: how fast area loses worth with the way, 1/m"
+    )
     claimed: Input[tuple[tuple[float, float], ...]] = Input(
         tuple, default=Key("claimed"), initial=(), doc="places that other robots go to look from"
     )
@@ -139,7 +144,13 @@ class FindView(Search):
     @property
     def _taste(self) -> TourTaste:
         return TourTaste(
-            self.min_gain, self.depth, keep_m=self.keep, haste=self.haste, scrap_weight=self.scrap_weight
+            self.min_gain,
+            self.depth,
+            keep_m=self.keep,
+            haste=self.haste,
+            scrap_weight=self.scrap_weight,
+            decay_per_m=self.decay,
+            aside_m=self.aside,
         )
 
     def _further_places(self) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -66,6 +67,9 @@ class TourTaste:
         haste: see :func:`open_tour`.
         scrap_weight: what the least view weighs in it, beside its gain up to 3 m².
         keep_m: by how much another tour has to be shorter to turn the robot away from its goal.
+        large_m2: a view that shows so much leads: the tour begins with the way to it.
+        decay_per_m: how fast what a view shows loses worth with the way, in choosing that one.
+        aside_m: what passing another view may add to the way there.
     """
 
     min_gain_m2: float = 0.1
@@ -76,6 +80,9 @@ class TourTaste:
     haste: float = 3.0
     scrap_weight: float = 1.0
     keep_m: float = 1.0
+    large_m2: float = 3.0
+    decay_per_m: float = 0.2
+    aside_m: float = 2.0
 
 
 @njit(cache=True)
@@ -176,7 +183,7 @@ def order_views(
     taste: TourTaste,
     kept_xy: NDArray[np.float64] | None = None,
 ) -> tuple[View, ...]:
-    """The views in the order of an open tour.
+    """The views in the order of an open tour that begins with the way to the most promising one.
 
     Args:
         chosen: as from :func:`choose_views`.
@@ -188,7 +195,35 @@ def order_views(
     for k, view in enumerate(views):
         between[0, k + 1] += first_leg_m(view) - (taste.keep_m if _is_among(view, kept_xy) else 0.0)
     weight = np.array([0.0, *(taste.scrap_weight + min(view.gain_m2, 3.0) for view in views)])
-    return tuple(views[k - 1] for k in open_tour(between, weight, taste.haste)[1:])
+    order = [int(k) for k in open_tour(between, weight, taste.haste)[1:]]
+    return tuple(views[k - 1] for k in _led(order, chosen, taste, kept_xy))
+
+
+def _led(
+    order: list[int], chosen: ViewSet, taste: TourTaste, kept_xy: NDArray[np.float64] | None
+) -> list[int]:
+    """The places of the tour, with no more than ``aside_m`` spent on the way to the most promising one.
+
+    What promises is area · exp(-decay · way) (González-Baños & Latombe, 2002): most floor comes early; what
+    the tour passes anyway is not left for a second visit.
+    """
+    views, between = chosen.views, chosen.between_m
+    worth = [
+        view.gain_m2
+        * math.exp(-taste.decay_per_m * between[0, k])
+        * (_KEPT_WORTH if _is_among(view, kept_xy) else 1.0)
+        for k, view in enumerate(views, start=1)
+    ]
+    lead = 1 + int(np.argmax(worth))
+    if views[lead - 1].gain_m2 < taste.large_m2:
+        return order
+    way = [0]
+    for k in order[: order.index(lead)]:
+        here = way[-1]
+        if between[here, k] + between[k, lead] - between[here, lead] <= taste.aside_m:
+            way.append(k)
+    way.append(lead)
+    return way[1:] + [k for k in order if k not in way]
 
 
 def _is_among(view: View, places_xy: NDArray[np.float64] | None) -> bool:
@@ -200,6 +235,8 @@ def first_run(
 ) -> tuple[View, ...]:
     """The views that lie one behind another as a tour begins: the robot passes all but the last of them.
 
+    At none of them it turns by more than a right angle: there it would all but stop.
+
     Args:
         chosen: as from :func:`choose_views`.
         order: the tour, as from :func:`order_views`.
@@ -207,12 +244,16 @@ def first_run(
         end_xy: where the present run ends; one that comes to it ends there too.
     """
     number = {view: k for k, view in enumerate(chosen.views, start=1)}
-    run, way_m = [order[0]], chosen.between_m[0, number[order[0]]]
+    at, between = [0, number[order[0]]], chosen.between_m
+    way_m = between[0, at[1]]
     for view in order[1:]:
-        if end_xy is not None and np.hypot(run[-1].xy[0] - end_xy[0], run[-1].xy[1] - end_xy[1]) < _SAME_M:
+        before, last, k = at[-2], at[-1], number[view]
+        x, y = order[len(at) - 2].xy
+        if end_xy is not None and np.hypot(x - end_xy[0], y - end_xy[1]) < _SAME_M:
             break
-        way_m += chosen.between_m[number[run[-1]], number[view]]
-        if way_m > chosen.between_m[0, number[view]] + detour_m:
+        way_m += between[last, k]
+        turns_back = between[before, k] ** 2 < between[before, last] ** 2 + between[last, k] ** 2
+        if turns_back or way_m > between[0, k] + detour_m:
             break
-        run.append(view)
-    return tuple(run)
+        at.append(k)
+    return tuple(order[: len(at) - 1])

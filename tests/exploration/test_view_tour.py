@@ -106,10 +106,32 @@ def spread(xys: list[tuple[float, float]]) -> ViewSet:
 
 
 def test_views_one_behind_another_are_one_run_and_those_aside_are_not() -> None:
-    chosen = spread([(1.0, 0.1), (2.5, 0.0), (2.5, 2.0), (4.0, 2.0)])
+    chosen = spread([(1.0, 0.1), (2.5, 0.0), (2.8, 2.0), (4.0, 2.0)])
     assert first_run(chosen, chosen.views, 0.5) == chosen.views[:2]
     assert first_run(chosen, chosen.views, 2.0) == chosen.views
     assert first_run(chosen, chosen.views, 0.0) == chosen.views[:1]
+
+
+def test_a_run_does_not_turn_back() -> None:
+    chosen = spread([(2.0, 0.0), (1.8, 1.0), (1.0, 1.0)])
+    assert first_run(chosen, chosen.views, 5.0) == chosen.views[:1]
+
+
+def worth(xy: tuple[float, float], gain_m2: float) -> View:
+    return View(xy, gain_m2, float(np.hypot(*xy)), (0, 0))
+
+
+def test_the_tour_begins_with_the_way_to_what_shows_most() -> None:
+    """A scrap behind the robot is nearer; one on the way is not left for a second visit."""
+    chosen = spread([(-1.5, 0.0), (2.0, 0.5), (5.0, 0.0)])
+    scrap, on_the_way = worth((-1.5, 0.0), 0.2), worth((2.0, 0.5), 0.2)
+    hall = worth((5.0, 0.0), 9.0)
+    views = ViewSet((scrap, on_the_way, hall), chosen.between_m, 9.4)
+    taste = TourTaste(haste=0.0, aside_m=1.0)
+    assert order_views(views, lambda _: 0.0, taste) == (on_the_way, hall, scrap)
+    assert order_views(views, lambda _: 0.0, TourTaste(haste=0.0, aside_m=5.0))[0] == scrap
+    closet = ViewSet((scrap, on_the_way, worth((5.0, 0.0), 2.0)), chosen.between_m, 2.4)
+    assert order_views(closet, lambda _: 0.0, taste)[0] == scrap
 
 
 def test_a_run_ends_where_the_present_one_does() -> None:
@@ -126,4 +148,6 @@ def test_no_run_is_longer_than_the_way_straight_to_its_end_and_the_detour(seed: 
     run = first_run(chosen, order, 0.7)
     assert list(run) == order[: len(run)]
     way = np.array([(0.0, 0.0), *(view.xy for view in run)])
-    assert np.hypot(*np.diff(way, axis=0).T).sum() <= np.hypot(*way[-1]) + 0.7 + 1e-9
+    legs = np.diff(way, axis=0)
+    assert np.hypot(*legs.T).sum() <= np.hypot(*way[-1]) + 0.7 + 1e-9
+    assert (np.einsum("ij,ij->i", legs[:-1], legs[1:]) >= -1e-9).all()
