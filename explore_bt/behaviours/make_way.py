@@ -56,13 +56,12 @@ class MakeWay(Leaf):
     def initialise(self) -> None:
         """Look for a place."""
         self._until_s = self.robot.now_s() + self.patience
-        self._refusal = self._why_not()
-        self._is_driving = not self._refusal and self._step_aside()
+        self._makes_way = self._is_needed()
+        self._is_driving = self._makes_way and self._step_aside()
 
     def update(self) -> Status:
         """Until the way is free."""
-        if self._refusal:
-            self.say(self._refusal)
+        if not self._makes_way:
             return Status.FAILURE
         if self._is_driving and self._has_come():
             self._is_driving = False
@@ -79,13 +78,16 @@ class MakeWay(Leaf):
         """Whatever comes next begins from rest."""
         self.robot.pilot.hold()
 
-    def _why_not(self) -> str:
+    def _is_needed(self) -> bool:
         if not someone_is_in_the_way(self.robot):
-            return "nobody is in the way"
+            self.say("")  # then this is no reason for anything
+            return False
         place, count = self._given
         count = count + 1 if math.dist(place, self.goal.position) < _SAME_M else 1
         self._given = (self.goal.position, count)
-        return f"has stood aside {self.chances} times for this goal" if count > self.chances else ""
+        if count > self.chances:
+            self.say(f"has stood aside {self.chances} times for this goal")
+        return count <= self.chances
 
     def _step_aside(self) -> bool:
         view, robot = self.robot.view(), self.robot
