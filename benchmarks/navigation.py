@@ -3,6 +3,9 @@
 Map and skeleton: full, updated in a window, queried, in CPU milliseconds; cells that differ from a full
 recompute over random windows. Planners from the package index on the same pairs: time, length, clearance. The
 widest passage against a slow independent search. Without --map a made-up building is used.
+
+Control: paths driven by each controller behind the gate, error, limits, CPU time of a cycle. People: errands in
+known flats and a corridor among walkers who heed nobody.
 """
 
 from __future__ import annotations
@@ -23,6 +26,8 @@ from explore_bt_planners.feature_transform import feature_transform
 from explore_bt_planners.terrain import Terrain
 from explore_bt_planners.terrain_cache import TerrainCache
 from machine import describe_machine
+from navigation_control import control_part
+from navigation_people import people_part
 from numpy.typing import NDArray
 from planner_peers import PEERS, PIP_LINE, Cell
 from scipy.ndimage import label
@@ -337,7 +342,11 @@ def planner_part(arguments: argparse.Namespace) -> dict[str, Any]:
     return figures
 
 
-PARTS: dict[str, Callable[[argparse.Namespace], dict[str, Any]]] = {"planner": planner_part}
+PARTS: dict[str, Callable[[argparse.Namespace], dict[str, Any]]] = {
+    "planner": planner_part,
+    "control": control_part,
+    "people": people_part,
+}
 
 
 def main() -> None:
@@ -350,11 +359,22 @@ def main() -> None:
     parser.add_argument("--pairs", type=int, default=500)
     parser.add_argument("--windows", type=int, default=1000)
     parser.add_argument("--peer-seconds", type=float, default=30.0, help="CPU time for each peer")
+    parser.add_argument("--paths", type=int, default=50, help="driven by each controller")
+    parser.add_argument("--episodes", type=int, default=50, help="errands among people, by each controller")
+    parser.add_argument("--walkers", type=int, default=4)
+    parser.add_argument("--jobs", type=int, default=2, help="errands at a time")
+    parser.add_argument("--parts", default=",".join(PARTS), help="which of: %(default)s")
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
+    chosen = arguments.parts.split(",")
+    if unknown := [name for name in chosen if name not in PARTS]:
+        parser.error(f"--parts: there is no part {unknown[0]}; choose from {', '.join(PARTS)}")
     machine = describe_machine()
     print(f"navigation, {machine}\n")
-    figures = {"machine": machine, **{name: part(arguments) for name, part in PARTS.items()}}
+    figures: dict[str, Any] = {"machine": machine}
+    for name in chosen:
+        figures[name] = PARTS[name](arguments)
+        print()
     if arguments.json:
         Path(arguments.json).write_text(json.dumps(figures, indent=2) + "\n")
 

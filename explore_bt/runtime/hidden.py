@@ -7,13 +7,14 @@ shows, and from what is left unseen people spread at walking speed.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.runtime.sight import Sight
-from explore_bt.types import FREE, OCCUPIED, OccupancyGrid
+from explore_bt.types import FREE, OCCUPIED, MovingObstacle, OccupancyGrid
 
 __all__ = ["HiddenFloor"]
 
@@ -36,12 +37,15 @@ class HiddenFloor:
         self._carried_m = 0.0
         self._resolution_m = 1.0
 
-    def see(self, grid: OccupancyGrid, sight: Sight) -> NDArray[np.float64]:
+    def see(
+        self, grid: OccupancyGrid, sight: Sight, people: Sequence[MovingObstacle] = ()
+    ) -> NDArray[np.float64]:
         """(K, 2) float64, metres, ``map`` frame: the edge of where a centre of someone unseen may be.
 
         Args:
             grid: the map; unknown space hides nobody, for it may well be a wall.
             sight: the newest scan.
+            people: who was seen a moment ago; once out of sight they may be anywhere near.
         """
         row, col = grid.cell_of(*sight.origin.tolist())
         reach = math.ceil(REACH_M / grid.resolution_m)
@@ -56,6 +60,10 @@ class HiddenFloor:
         slim = _SLIM_M / grid.resolution_m
         has_room = (cells == FREE) & (_distance(in_sight) > slim) & (_distance(cells == OCCUPIED) > slim)
         before = self._before(grid, (row0, col0), cells.shape)
+        for place in grid.cells_of(np.array([thing.at(sight.stamp_s) for thing in people]).reshape(-1, 2)):
+            y, x = place - np.array([row0, col0])
+            if 0 <= y < before.shape[0] and 0 <= x < before.shape[1]:
+                before[y, x] = 1
         spread = self._spread(before, sight.stamp_s, grid.resolution_m)
         self._hidden = (spread & has_room).astype(np.uint8)
         self._corner = self._lattice(grid, row0, col0)

@@ -36,7 +36,8 @@ _MOVED_M, _LEAST_MPS = 0.15, 0.15
 """What came less far than this, or slower, may be the flicker of an edge, or a thin leg seen at last."""
 _HOLD_S = 5.0
 """What has paused for so long is left to the map."""
-_LOST_S = 1.0
+_LOST_S, _LOST_NEAR_S, _NEAR_M = 0.3, 1.0, 0.8
+"""How long one that is out of sight is followed; longer beside the robot, where it may hide the whole view."""
 _ABOUT_S = 60.0
 _OFF_M = 0.15
 """A return so far from everything that the map does not call free is no wall drawn a little thin."""
@@ -155,9 +156,15 @@ class MovingThings:
         self._things = [
             thing
             for thing in self._things
-            if stamp_s - thing.stamp_s <= (_LOST_S if thing.hits >= _HITS else 0.0)
-            and stamp_s - thing.moved_s <= _HOLD_S
+            if stamp_s - thing.stamp_s <= _followed_s(thing, sight) and stamp_s - thing.moved_s <= _HOLD_S
         ]
+
+
+def _followed_s(thing: _Thing, sight: Sight) -> float:
+    if thing.hits < _HITS:
+        return 0.0
+    is_near = math.dist(thing.predicted(sight.stamp_s), sight.origin.tolist()) < _NEAR_M
+    return _LOST_NEAR_S if is_near else _LOST_S
 
 
 def _hold(thing: _Thing, sight: Sight) -> None:

@@ -42,5 +42,5 @@ class People:
         if sight is None:
             return Surroundings(scan.stamp_s, points, grid)
         moving = self._things.see(sight, grid)
-        hidden = self._floor.see(grid, sight) if self._things.are_about(scan.stamp_s) else _NOWHERE
+        hidden = self._floor.see(grid, sight, moving) if self._things.are_about(scan.stamp_s) else _NOWHERE
         return Surroundings(scan.stamp_s, points, grid, moving, hidden)
