@@ -4,8 +4,8 @@ Map and skeleton: full, updated in a window, queried, in CPU milliseconds; cells
 recompute over random windows. Planners from the package index on the same pairs: time, length, clearance. The
 widest passage against a slow independent search. Without --map a made-up building is used.
 
-Control: paths driven by each controller behind the gate, error, limits, CPU time of a cycle. People: errands in
-known flats and a corridor among walkers who heed nobody.
+Control: paths driven by each controller behind the gate, error, limits, CPU time of a cycle. People: errands
+in known flats and a corridor among walkers who heed nobody.
 """
 
 from __future__ import annotations

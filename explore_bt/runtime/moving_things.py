@@ -37,7 +37,7 @@ _MOVED_M, _LEAST_MPS = 0.15, 0.15
 _HOLD_S = 5.0
 """What has paused for so long is left to the map."""
 _LOST_S, _LOST_NEAR_S, _NEAR_M = 0.3, 1.0, 0.8
-"""How long one that is out of sight is followed; longer beside the robot, where it may hide the whole view."""
+"""How long one that is out of sight is followed; longer beside the robot, where it may hide all the view."""
 _ABOUT_S = 60.0
 _OFF_M = 0.15
 """A return so far from everything that the map does not call free is no wall drawn a little thin."""
