@@ -10,6 +10,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from exploration_runs import Store
+from matplotlib.lines import Line2D
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt  # the backend is chosen first
@@ -98,7 +99,7 @@ def _plot(store: Store, rows: Sequence[Row], column: int, label: str, file: Path
     across = min(3, len(maps)) or 1
     down = -(-len(maps) // across) or 1
     size = (5.2 * across, 3.6 * down)
-    figure, axes = plt.subplots(down, across, figsize=size, squeeze=False, layout="tight")
+    figure, axes = plt.subplots(down, across, figsize=size, squeeze=False, layout="constrained")
     for panel, name in zip(axes.flat, maps, strict=False):
         for number, strategy in enumerate(strategies):
             style = {"color": f"C{number}", "lw": 1.0, "alpha": 0.8, "label": strategy}
@@ -110,13 +111,16 @@ def _plot(store: Store, rows: Sequence[Row], column: int, label: str, file: Path
         if tours and column == 0:
             lengths = np.array([[tour[share] or np.nan for share in tour] for tour in tours], dtype=float)
             shares = [100 * float(share) for share in tours[0]]
-            panel.plot(np.nanmean(lengths, axis=0), shares, "k.--", label="tour, mean")
+            lengths = lengths[:, ~np.isnan(lengths).all(axis=0)]
+            panel.plot(np.nanmean(lengths, axis=0), shares[: lengths.shape[1]], "k.--", label="tour, mean")
         panel.set(title=name, xlabel=label, ylabel="coverage, %", ylim=(0, 101), xlim=(0, None))
         panel.grid(alpha=0.3)
     for panel in axes.flat[len(maps) :]:
         panel.set_axis_off()
-    if maps:
-        axes[0, 0].legend(loc="lower right", fontsize="small")
+    lines: dict[str, Line2D] = {}
+    for panel in axes.flat:
+        lines.update(zip(*panel.get_legend_handles_labels()[::-1], strict=True))
+    figure.legend(lines.values(), lines, loc="outside lower center", ncols=len(lines) or 1, frameon=False)
     figure.savefig(file, dpi=110)
     plt.close(figure)
     return file
