@@ -32,6 +32,7 @@ _GAIN, _RATE_GAIN = 0.5, 0.2
 """Of the filter for place and velocity: half of a surprise is believed at once."""
 _HITS = 2
 _SURELY_M = 0.6
+"""Who has come so far is somebody: people are about."""
 _MOVED_M, _LEAST_MPS = 0.15, 0.15
 """What came less far than this, or slower, may be the flicker of an edge, or a thin leg seen at last."""
 _HOLD_S = 5.0
@@ -178,6 +179,8 @@ def _hold(thing: _Thing, sight: Sight) -> None:
 
 
 def _is_on_free_floor(points: NDArray[np.float64], grid: OccupancyGrid) -> NDArray[np.bool_]:
+    if not len(points):
+        return np.zeros(0, dtype=np.bool_)
     return np.asarray(clearance_at(grid, points, 2.0 * _OFF_M) > _OFF_M)
 
 

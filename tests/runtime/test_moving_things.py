@@ -1,6 +1,7 @@
 """Scenes with discs that walk through a room, scanned beam by beam from a robot that drives and turns."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -145,3 +146,16 @@ def test_a_corrected_pose_makes_it_forget() -> None:
     assert scene.run(1.5)
     scene.things.forget()
     assert scene.run(PERIOD_S) == ()
+
+
+def test_in_open_space_nothing_comes_back_and_nothing_moves() -> None:
+    scan = Scan2D(0.0, ANGLES, np.full(BEAMS, np.inf, dtype=np.float32), TIMES, 0.02, 5.0)
+    for stamp_s in (0.1, 0.2, 0.3):
+        sight = Sight.of(replace(scan, stamp_s=stamp_s), CENTRE, STILL)
+        assert sight is not None
+        assert MovingThings().see(sight, UNKNOWN_FLOOR) == ()
+
+
+def test_a_blind_scan_is_no_sight() -> None:
+    scan = Scan2D(0.0, ANGLES, np.full(BEAMS, np.nan, dtype=np.float32), TIMES, 0.02, 5.0)
+    assert Sight.of(scan, CENTRE, STILL) is None
