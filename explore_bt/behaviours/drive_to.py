@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from explore_bt.behaviours.make_way import SOMEONE, someone_is_in_the_way
-from explore_bt.errors import ComponentFailure, PlanningFailure
+from explore_bt.errors import ComponentFailure, GoalBlocked, NoPath, PlanningFailure, StartBlocked
 from explore_bt.exploration import clearance_at, visible_unknown_area
 from explore_bt.interfaces import ControlStatus, HeldBy
 from explore_bt.tree import Input, Key, Leaf, Output, Status
@@ -22,6 +22,7 @@ _TIGHT_POSES_AHEAD = 2  # about 0.2 m: the gate's brake ends before the place it
 _NOTHING_M2 = 0.02
 _DETOUR_M = 5.0
 _PASSED_M = 0.2
+_BESIDE_M = 1.0
 
 
 class DriveTo(Leaf):
@@ -114,7 +115,7 @@ class DriveTo(Leaf):
         try:
             self._path = self.robot.plan(goal.pose, self._via)
         except (PlanningFailure, ComponentFailure) as refusal:
-            if self.robot.moving and not isinstance(refusal, ComponentFailure):
+            if self._may_be_people(refusal):
                 return self._wait_without_path()
             self.failure = refusal.code if isinstance(refusal, PlanningFailure) else "planner_failed"
             self.say(f"no path: {refusal}")
@@ -126,6 +127,13 @@ class DriveTo(Leaf):
             f"to ({x:.1f}, {y:.1f}): {self._path.length_m:.1f} m, closest {self._path.min_clearance_m:.2f} m"
         )
         return Status.RUNNING
+
+    def _may_be_people(self, refusal: Exception) -> bool:
+        """Whether someone may stand in the only way, or on the goal."""
+        if isinstance(refusal, GoalBlocked):
+            goal, now_s = self.goal.pose, self.robot.now_s()
+            return any(thing.least_distance_m(goal, now_s, 0.0) < _BESIDE_M for thing in self.robot.moving)
+        return bool(self.robot.moving) and isinstance(refusal, NoPath | StartBlocked)
 
     def _wait_without_path(self) -> Status:
         """Whoever walks about may stand in the only way: ask again in a second."""

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from explore_bt.behaviours import DriveTo
-from explore_bt.errors import NoPath
+from explore_bt.errors import GoalBlocked, NoPath
 from explore_bt.interfaces import ControlStatus, HeldBy
 from explore_bt.testing.fake_robot import FakeRobot, open_floor
 from explore_bt.tree import Blackboard, Status
@@ -80,6 +80,14 @@ def test_a_way_that_someone_stands_in_is_asked_for_again() -> None:
     leaf.tick_once()
     assert leaf.status is Status.RUNNING
     assert len(robot.pilot.followed) == 1
+
+
+@pytest.mark.parametrize(("x", "expected"), [(3.3, Status.RUNNING), (-2.0, Status.FAILURE)])
+def test_a_goal_that_is_blocked_is_waited_for_only_if_someone_is_there(x: float, expected: Status) -> None:
+    robot = FakeRobot(open_floor())
+    robot.refusal = GoalBlocked("the goal has 0.03 m of clearance")
+    robot.moving = (MovingObstacle(1, (x, 0.0), (0.0, 0.0), 0.25, 0.0),)
+    assert drive(robot).status is expected
 
 
 def test_an_obstacle_that_appears_on_the_way_ahead_brings_a_new_plan() -> None:
