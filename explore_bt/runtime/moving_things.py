@@ -37,7 +37,7 @@ _MOVED_M, _LEAST_MPS = 0.15, 0.15
 """What came less far than this, or slower, may be the flicker of an edge, or a thin leg seen at last."""
 _HOLD_S = 5.0
 """What has paused for so long is left to the map."""
-_LOST_S, _LOST_NEAR_S, _NEAR_M = 0.3, 1.0, 0.8
+_LOST_S, _LOST_NEAR_S, _NEAR_M = 0.3, 1.0, 1.5
 """How long one that is out of sight is followed; longer beside the robot, where it may hide all the view."""
 _ABOUT_S = 60.0
 _OFF_M = 0.15

@@ -48,6 +48,8 @@ WALKING_MPS = 1.6
 AT_REST_MPS = 0.03
 """Below this the robot counts as standing: what walks into it then was not run into."""
 MOVING_MARGIN_M = 0.05
+SURE_S = 0.3
+"""Held by someone at rest, the robot sets off only after so long without them: who is near is easily lost."""
 BODY_M = 0.25
 """Radius of who may stand unseen behind a corner."""
 CAUTIOUS_MPS = 0.15
@@ -83,6 +85,7 @@ class SafetyGate:
         self._window = ClearanceWindow(LOOK_AHEAD_M)
         self._is_held = False
         self._around: Surroundings | None = None
+        self._someone_s = -math.inf
         self._scans: deque[NDArray[np.float64]] = deque(maxlen=max(count for count, _ in VOTES))
 
     def see(self, surroundings: Surroundings, near: Pose2) -> None:
@@ -146,6 +149,14 @@ class SafetyGate:
         return in_map or self._fault_in_scans(ahead, following)
 
     def _fault_by_people(self, way: WayToRest, now_s: float) -> str:
+        fault = self._fault_by_moving(way, now_s)
+        if fault:
+            self._someone_s = now_s
+        elif now_s - self._someone_s < SURE_S and way.speeds_mps[0] < AT_REST_MPS < way.speeds_mps.max():
+            fault = "someone was near a moment ago"
+        return fault
+
+    def _fault_by_moving(self, way: WayToRest, now_s: float) -> str:
         around = self._around
         if around is None:
             return ""

@@ -116,6 +116,19 @@ def test_turning_on_the_spot_is_always_allowed() -> None:
         assert chase.held_by is HeldBy.NOTHING
 
 
+def test_who_is_lost_from_sight_beside_a_standing_robot_holds_it_a_little_longer() -> None:
+    chase = Chase(np.array([[0.8, 0.0]]), 0.0)
+    for _ in range(40):
+        chase.step(Twist2(0.5, 0.0))
+    chase.people += 20.0
+    for _ in range(6):
+        chase.step(Twist2(0.5, 0.0))
+        assert chase.motion.twist.linear_mps <= AT_REST_MPS + 1e-9
+    for _ in range(20):
+        chase.step(Twist2(0.5, 0.0))
+    assert chase.motion.twist.linear_mps > 0.2
+
+
 def test_who_is_told_of_is_named_as_the_reason() -> None:
     chase, reasons = Chase(np.array([[1.0, 0.0]]), 0.0), set()
     for _ in range(60):
