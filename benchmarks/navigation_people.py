@@ -8,12 +8,13 @@ import statistics
 import tempfile
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from explore_bt_drivers.world import load_world
 
 from explore_bt.evaluation import spread_starts
 from explore_bt.mission import load_mission
@@ -84,7 +85,7 @@ def people_part(arguments: argparse.Namespace) -> dict[str, Any]:
         with ProcessPoolExecutor(arguments.jobs, mp_context=get_context("spawn")) as pool:
             for controller in CONTROLLERS:
                 errands = list(_errands(worlds, arguments.episodes, arguments.walkers, controller))
-                alone = pool.map(run_errand, [_without_people(errand) for errand in errands])
+                alone = pool.map(run_errand, [replace(errand, walkers=0) for errand in errands])
                 among = pool.map(run_errand, errands)
                 figures[controller] = _figures(errands, list(alone), list(among))
                 print(_row(controller, figures[controller]), flush=True)
@@ -113,18 +114,12 @@ def _mapped(world: Path, folder: Path) -> tuple[Path, Path]:
 def _errands(
     worlds: Sequence[tuple[Path, Path]], count: int, walkers: int, controller: str
 ) -> Iterator[Errand]:
-    from explore_bt_drivers.world import load_world
-
     for episode in range(count):
         world, known = worlds[episode % len(worlds)]
         floor = load_world(world).floor
         start, *places = spread_starts(floor, _RADIUS_M + _SPARE_M, 12, seed=episode)
         goal = places[int(np.random.default_rng(episode).integers(len(places)))]
         yield Errand(world, known, start, goal, episode, walkers, controller)
-
-
-def _without_people(errand: Errand) -> Errand:
-    return Errand(**{**{key: getattr(errand, key) for key in Errand.__slots__}, "walkers": 0})
 
 
 def run_errand(errand: Errand) -> Outing:

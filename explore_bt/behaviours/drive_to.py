@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from explore_bt.behaviours.make_way import SOMEONE, someone_is_in_the_way
+from explore_bt.behaviours.people import SOMEONE, someone_is_in_the_way, who_is_near
 from explore_bt.errors import ComponentFailure, GoalBlocked, NoPath, PlanningFailure, StartBlocked
 from explore_bt.exploration import clearance_at, visible_unknown_area
 from explore_bt.interfaces import ControlStatus, HeldBy
@@ -131,8 +131,7 @@ class DriveTo(Leaf):
     def _may_be_people(self, refusal: Exception) -> bool:
         """Whether someone may stand in the only way, or on the goal."""
         if isinstance(refusal, GoalBlocked):
-            goal, now_s = self.goal.pose, self.robot.now_s()
-            return any(thing.least_distance_m(goal, now_s, 0.0) < _BESIDE_M for thing in self.robot.moving)
+            return bool(who_is_near(self.robot, self.goal.pose, _BESIDE_M))
         return bool(self.robot.moving) and isinstance(refusal, NoPath | StartBlocked)
 
     def _wait_without_path(self) -> Status:

@@ -186,7 +186,7 @@ class FindView(Search):
 
     def _best_run(self, chosen: ViewSet) -> tuple[View, ...]:
         if self.rank == "gain":
-            return (max(chosen.views, key=self._utility),)
+            return (max(chosen.views, key=lambda view: view.worth(self.decay)),)
         present = self._present_run
         order = order_views(chosen, self._first_leg_m, self._taste, present)
         end = tuple(present[-1].tolist()) if len(present) else None
@@ -214,9 +214,6 @@ class FindView(Search):
         turn = self.turn_cost * 0.5 * (1.0 - math.cos(wrap_angle(bearing - here.yaw_rad)))
         behind = not self.history.contains(view.xy, 1)
         return turn + (self.half_plane_cost if behind else 0.0)
-
-    def _utility(self, view: View) -> float:
-        return view.gain_m2 * math.exp(-self.decay * view.travel_m)
 
     def _take(self, run: tuple[View, ...], count: int) -> Status:
         *passed, last = run

@@ -6,31 +6,19 @@ import math
 
 import numpy as np
 
+from explore_bt.behaviours.people import someone_is_in_the_way, who_is_near
 from explore_bt.errors import ComponentFailure, PlanningFailure
 from explore_bt.exploration import find_refuge, gap_to_courses_m
-from explore_bt.interfaces import ControlStatus, HeldBy, RobotServices
+from explore_bt.interfaces import ControlStatus
 from explore_bt.tree import Input, Key, Leaf, Status
 from explore_bt.types import Pose2, Waypoint
 from explore_bt.units import Duration, Length
 
-__all__ = ["SOMEONE", "MakeWay", "someone_is_in_the_way"]
+__all__ = ["MakeWay"]
 
-SOMEONE = "someone_in_the_way"
-"""Code of the failure of a drive that someone was in the way of."""
 _MARGIN_M = 0.05
-_CLOSE_M = 1.0
-"""Someone so near is why a scan holds the robot, not the furniture."""
 _APART_M = 0.3
 _SAME_M = 0.3
-
-
-def someone_is_in_the_way(robot: RobotServices) -> bool:
-    """Whether the robot does not get on because someone is about."""
-    if robot.pilot.held_by is HeldBy.SOMEONE:
-        return True
-    here, now_s = robot.estimate().T_map_base, robot.now_s()
-    near_m = robot.footprint_radius_m + _CLOSE_M
-    return any(thing.least_distance_m(here, now_s, 0.0) < near_m for thing in robot.moving)
 
 
 class MakeWay(Leaf):
@@ -118,9 +106,8 @@ class MakeWay(Leaf):
         return self.robot.pilot.output.status in (ControlStatus.ARRIVED, ControlStatus.STUCK)
 
     def _is_free(self) -> bool:
-        here, now_s = self.robot.estimate().T_map_base, self.robot.now_s()
-        near_m = self.robot.footprint_radius_m + self.clear
-        near = [thing for thing in self.robot.moving if thing.least_distance_m(here, now_s, 0.0) < near_m]
+        here = self.robot.estimate().T_map_base
+        near = who_is_near(self.robot, here, self.robot.footprint_radius_m + self.clear)
         gap_m = float(gap_to_courses_m(np.array([here.xy]), near)[0])
         is_leaving = all(_goes_away(thing.xy, thing.velocity_mps, here) for thing in near)
         return is_leaving and gap_m > self.robot.footprint_radius_m + _APART_M

@@ -38,6 +38,10 @@ class View:
     travel_m: float
     block: tuple[int, int]
 
+    def worth(self, decay_per_m: float) -> float:
+        """Area · exp(-decay · way), m² (González-Baños & Latombe, 2002)."""
+        return self.gain_m2 * math.exp(-decay_per_m * self.travel_m)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ViewSet:
@@ -204,15 +208,11 @@ def _led(
 ) -> list[int]:
     """The places of the tour, with no more than ``aside_m`` spent on the way to the most promising one.
 
-    What promises is area · exp(-decay · way) (González-Baños & Latombe, 2002): most floor comes early; what
-    the tour passes anyway is not left for a second visit.
+    So most floor comes early, and what the tour passes anyway is not left for a second visit.
     """
     views, between = chosen.views, chosen.between_m
     worth = [
-        view.gain_m2
-        * math.exp(-taste.decay_per_m * between[0, k])
-        * (_KEPT_WORTH if _is_among(view, kept_xy) else 1.0)
-        for k, view in enumerate(views, start=1)
+        view.worth(taste.decay_per_m) * (_KEPT_WORTH if _is_among(view, kept_xy) else 1.0) for view in views
     ]
     lead = 1 + int(np.argmax(worth))
     if views[lead - 1].gain_m2 < taste.large_m2:

@@ -149,17 +149,17 @@ class SafetyGate:
         return in_map or self._fault_in_scans(ahead, following)
 
     def _fault_by_people(self, way: WayToRest, now_s: float) -> str:
-        fault = self._fault_by_moving(way, now_s)
+        if self._around is None:
+            return ""
+        fault = self._fault_by_moving(way, now_s, self._around)
+        fault = fault or self._fault_by_hidden(way, now_s, self._around)
         if fault:
             self._someone_s = now_s
         elif now_s - self._someone_s < SURE_S and way.speeds_mps[0] < AT_REST_MPS < way.speeds_mps.max():
             fault = "someone was near a moment ago"
         return fault
 
-    def _fault_by_moving(self, way: WayToRest, now_s: float) -> str:
-        around = self._around
-        if around is None:
-            return ""
+    def _fault_by_moving(self, way: WayToRest, now_s: float, around: Surroundings) -> str:
         here, ahead = way.poses[0, :2], way.poses[_until(way.speeds_mps, AT_REST_MPS), :2]
         times_s = way.times_s[: len(ahead)] + now_s
         for thing in around.moving:
@@ -169,7 +169,7 @@ class SafetyGate:
             end_m = math.dist(thing.xy, way.poses[-1, :2].tolist()) - thing.radius_m - self._radius_m
             if (spare_m.size and spare_m.min() < 0.0) or end_m < min(here_m, MOVING_MARGIN_M):
                 return f"someone {max(here_m, 0.0):.1f} m away could be met before the robot stands"
-        return self._fault_by_hidden(way, now_s, around)
+        return ""
 
     def _fault_by_hidden(self, way: WayToRest, now_s: float, around: Surroundings) -> str:
         ahead = way.poses[_until(way.speeds_mps, CAUTIOUS_MPS)]
