@@ -1,6 +1,5 @@
 import math
 import os
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +26,8 @@ from explore_bt.types import (
     WheelOdometry,
 )
 
+from .conftest import drive, prints
+
 WORLDS = Path(__file__).parents[2] / "missions" / "worlds"
 ROOM = WORLDS / "room.yaml"
 
@@ -35,20 +36,6 @@ def ready(world: Path = ROOM, context: RobotContext | None = None, **options: ob
     driver = Sim2d(Sim2dOptions.model_validate({"world": world, **options}))
     driver.setup(context or RobotContext(seed=3))
     return driver
-
-
-def drive(driver: Sim2d, twist: Twist2, duration_s: float) -> list[Measurement]:
-    measured: list[Measurement] = []
-    begin = driver.clock.now_s()
-    for period in range(1, round(duration_s * 20) + 1):
-        driver.command(twist)
-        driver.clock.wait_until(begin + period / 20)
-        measured += driver.read()
-    return measured
-
-
-def prints(measured: Sequence[Measurement]) -> list[object]:
-    return [m.ranges_m.tobytes() if isinstance(m, Scan2D) else m for m in measured]
 
 
 class TestSim2d(DriverContract):

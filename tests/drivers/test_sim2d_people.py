@@ -15,6 +15,8 @@ from explore_bt.interfaces import RobotContext
 from explore_bt.maps import write_map
 from explore_bt.types import FREE, OCCUPIED, Measurement, OccupancyGrid, Pose2, Scan2D, Twist2
 
+from .conftest import drive, prints
+
 WORLDS = Path(__file__).parents[2] / "missions" / "worlds"
 ROOM, APARTMENT = WORLDS / "room.yaml", WORLDS / "apartment.yaml"
 FIELD = "format: explore-bt-world/1\nbounds: [-10, -10, 10, 10]\n"
@@ -32,22 +34,8 @@ def field(folder: Path, people: str = "[]") -> Path:
     return path
 
 
-def drive(driver: Sim2d, twist: Twist2, duration_s: float) -> list[Measurement]:
-    measured: list[Measurement] = []
-    begin = driver.clock.now_s()
-    for period in range(1, round(duration_s * 20) + 1):
-        driver.command(twist)
-        driver.clock.wait_until(begin + period / 20)
-        measured += driver.read()
-    return measured
-
-
 def scans(measured: list[Measurement]) -> list[Scan2D]:
     return [m for m in measured if isinstance(m, Scan2D)]
-
-
-def prints(measured: list[Measurement]) -> list[object]:
-    return [m.ranges_m.tobytes() if isinstance(m, Scan2D) else m for m in measured]
 
 
 def ranges_to_disc(

@@ -9,17 +9,13 @@ from hypothesis import strategies as st
 from explore_bt.interfaces import HeldBy, Surroundings
 from explore_bt.runtime.safety_gate import AT_REST_MPS, SafetyGate
 from explore_bt.testing.fake_robot import open_floor
-from explore_bt.types import MotionLimits, MotionState, MovingObstacle, Pose2, Twist2
+from explore_bt.types import MotionState, MovingObstacle, Pose2, Twist2
 
-LIMITS = MotionLimits()
+from .conftest import DT, LIMITS, towards
+
 RADIUS, BODY = 0.25, 0.25
-DT, SCAN_EVERY = 0.05, 2
+SCAN_EVERY = 2
 FLOOR = open_floor(30.0, 0.1)
-
-
-def towards(wanted: float, now: float, a: float, a_max: float, j_max: float) -> float:
-    change = np.clip((wanted - now) / DT, a - j_max * DT, a + j_max * DT)
-    return now + float(np.clip(change, -a_max, a_max)) * DT
 
 
 class Chase:
@@ -39,11 +35,7 @@ class Chase:
                 for k, (x, y) in enumerate(self.people.tolist())
             )
             self.gate.see(Surroundings(self.time_s, np.empty((0, 2)), FLOOR, moving), self.pose)
-        v, w = self.motion.twist.linear_mps, self.motion.twist.angular_rps
-        wish = Twist2(
-            towards(wanted.linear_mps, v, self.motion.linear_acceleration_mps2, 0.5, 2.0),
-            towards(wanted.angular_rps, w, self.motion.angular_acceleration_rps2, 2.0, 8.0),
-        )
+        wish = towards(wanted, self.motion)
         decision = self.gate.decide(wish, self.pose, self.motion, DT, self.time_s)
         self.held_by = decision.held_by
         self._move(decision.motion)

@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 
 from explore_bt.interfaces import Surroundings
 from explore_bt.runtime.safety_gate import SafetyGate
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, MotionLimits, MotionState, OccupancyGrid, Pose2, Twist2
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, MotionState, OccupancyGrid, Pose2, Twist2
 
-LIMITS = MotionLimits()
+from .conftest import DT, LIMITS, towards
+
 RADIUS = 0.25
-DT = 0.05
 RESOLUTION = 0.05
 
 
@@ -26,7 +26,7 @@ def drive(gate: SafetyGate, wanted: Twist2, pose: Pose2, steps: int) -> tuple[Po
     """The robot does exactly what the gate sends; the wish is reached under the limits."""
     motion, reason = MotionState(), ""
     for _ in range(steps):
-        decision = gate.decide(_towards(wanted, motion), pose, motion, DT)
+        decision = gate.decide(towards(wanted, motion), pose, motion, DT)
         mean_v = 0.5 * (motion.twist.linear_mps + decision.motion.twist.linear_mps)
         mean_w = 0.5 * (motion.twist.angular_rps + decision.motion.twist.angular_rps)
         heading = pose.yaw_rad + 0.5 * mean_w * DT
@@ -37,17 +37,6 @@ def drive(gate: SafetyGate, wanted: Twist2, pose: Pose2, steps: int) -> tuple[Po
         )
         motion, reason = decision.motion, decision.reason
     return pose, motion, reason
-
-
-def _towards(wanted: Twist2, motion: MotionState) -> Twist2:
-    def step(target: float, now: float, a: float, a_max: float, j_max: float) -> float:
-        change = np.clip((target - now) / DT, a - j_max * DT, a + j_max * DT)
-        return now + float(np.clip(change, -a_max, a_max)) * DT
-
-    return Twist2(
-        step(wanted.linear_mps, motion.twist.linear_mps, motion.linear_acceleration_mps2, 0.5, 2.0),
-        step(wanted.angular_rps, motion.twist.angular_rps, motion.angular_acceleration_rps2, 2.0, 8.0),
-    )
 
 
 def clearance(grid: OccupancyGrid, pose: Pose2) -> float:
@@ -75,7 +64,7 @@ def test_whatever_is_wanted_the_footprint_never_leaves_free_space(
     pose, motion = Pose2(2.0, 0.0, yaw), MotionState()
     for _ in range(160):
         gate.see(Surroundings(0.0, np.empty((0, 2)), grid), pose)
-        decision = gate.decide(_towards(Twist2(v, w), motion), pose, motion, DT)
+        decision = gate.decide(towards(Twist2(v, w), motion), pose, motion, DT)
         mean_v = 0.5 * (motion.twist.linear_mps + decision.motion.twist.linear_mps)
         mean_w = 0.5 * (motion.twist.angular_rps + decision.motion.twist.angular_rps)
         heading = pose.yaw_rad + 0.5 * mean_w * DT
