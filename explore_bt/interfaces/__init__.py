@@ -3,10 +3,11 @@
 from explore_bt.interfaces.controller import Controller, ControlOutput, ControlStatus
 from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.exporter import Exporter, RobotProduct
+from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.interfaces.planner import Planner, never
 from explore_bt.interfaces.playback import Playback, Recorded
 from explore_bt.interfaces.plugin import API_VERSION, Plugin, PluginOptions, RobotContext
-from explore_bt.interfaces.services import HeldBy, MapMemory, MapView, Pilot, RobotServices
+from explore_bt.interfaces.services import MapMemory, MapView, Pilot, RobotServices
 from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.slam import Slam
 from explore_bt.interfaces.snapshot import Event, NodeInfo, NodeState, RobotSnapshot, RunInfo, TickSnapshot

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Protocol
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from explore_bt.exploration.clearance import Clearances
 from explore_bt.exploration.ground import Ground, GroundMemory
 from explore_bt.interfaces.controller import ControlOutput
+from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.types import (
     Budget,
     Estimate,
@@ -24,16 +24,7 @@ from explore_bt.types import (
     Trajectory,
 )
 
-__all__ = ["HeldBy", "MapMemory", "MapView", "Pilot", "RobotServices"]
-
-
-class HeldBy(enum.StrEnum):
-    """What keeps the safety gate from passing the controller's commands on."""
-
-    NOTHING = "nothing"
-    OBSTACLE = "an obstacle"
-    SOMEONE = "someone who moves"
-    SENSES = "senses that fail"
+__all__ = ["MapMemory", "MapView", "Pilot", "RobotServices"]
 
 
 class MapMemory:

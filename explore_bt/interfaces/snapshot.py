@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 
+from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.types import Estimate, Measurement, MotionState, OccupancyGrid, Path, Pose2, Scan2D, Score
 
 __all__ = ["Event", "NodeInfo", "NodeState", "RobotSnapshot", "RunInfo", "TickSnapshot"]
@@ -32,10 +33,15 @@ class NodeInfo:
 
 @dataclass(frozen=True, slots=True)
 class NodeState:
-    """A node after a tick: ``success``, ``failure``, ``running`` or ``idle``, and its reason in words."""
+    """A node after a tick: ``success``, ``failure``, ``running`` or ``idle``, and its reason in words.
+
+    Attributes:
+        ticks: how often it was ticked in this tick of the tree; 0 leaves an older status standing.
+    """
 
     status: str
     message: str
+    ticks: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +66,7 @@ class RobotSnapshot:
         nodes: in the order of ``RunInfo.trees[robot]``.
         blackboard: key -> value after this tick.
         gate_reason: empty while commands pass; else why the safety gate brakes.
+        held_by: what kind of reason that is.
         true_pose: where the driver knows it.
         measured: what SLAM was given since the tick before, in this order.
     """
@@ -76,6 +83,7 @@ class RobotSnapshot:
     score: Score
     true_pose: Pose2 | None = None
     measured: tuple[Measurement, ...] = ()
+    held_by: HeldBy = HeldBy.NOTHING
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -36,7 +37,7 @@ from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tight_places import TightPlaces
-from explore_bt.tree import Blackboard, PortUnsetError, Status, halt
+from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
     Battery,
     Budget,
@@ -81,6 +82,8 @@ class Robot:
         self._controller = spec.controller.make()
         self.blackboard = Blackboard()
         self.tree = build_tree(spec.tree, self, self.blackboard)
+        self._probe: Probe | None = None
+        self._ticks: Counter[int] = Counter()
         self._scan: Scan2D | None = None
         self._measured: list[Measurement] = []
         self._view: MapView | None = None
@@ -261,10 +264,16 @@ class Robot:
         pose = self.pilot.predict(self.estimate(), now_s).T_map_base
         self.scores.control_step(pose, self.pilot.motion, now_s, dt_s)
 
+    def watch_ticks(self, probe: Probe) -> None:
+        """Have ``probe`` asked before and after every tick of every node of the tree."""
+        self._probe = probe
+        attach(self.tree.root, probe)
+
     def decide(self) -> Status:
         """Tick the tree once."""
         try:
-            self.tree.root.tick_once()
+            for node in tick(self.tree.root, self._probe):
+                self._ticks[id(node)] += 1
         except Exception as error:  # a leaf is a plugin too: its failure ends the mission, not the process
             reason = str(error) if isinstance(error, PortUnsetError) else repr(error)
             self.blackboard.write(REASON_KEY, f"a leaf failed: {reason}")
@@ -286,8 +295,9 @@ class Robot:
     # --- for observers ------------------------------------------------------------------------------
 
     def snapshot(self) -> RobotSnapshot:
-        """What observers are shown after a tick; what has been measured is shown once."""
+        """What observers are shown after a tick; what was measured and who was ticked is shown once."""
         measured, self._measured = tuple(self._measured), []
+        ticks, self._ticks = self._ticks, Counter()
         return RobotSnapshot(
             robot=self.name,
             estimate=self.estimate(),
@@ -297,12 +307,14 @@ class Robot:
             motion=self.pilot.motion,
             gate_reason=self.pilot.gate_reason,
             nodes=tuple(
-                NodeState(_status_word(node.status), node.feedback_message) for node in self.tree.nodes
+                NodeState(_status_word(node.status), node.feedback_message, ticks[id(node)])
+                for node in self.tree.nodes
             ),
             blackboard=dict(self.blackboard),
             score=self.scores.score(),
             true_pose=self.scores.true_pose,
             measured=measured,
+            held_by=self.pilot.held_by,
         )
 
     def tell(self, level: str, source: str, message: str) -> None:

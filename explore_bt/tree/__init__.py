@@ -22,6 +22,7 @@ from explore_bt.tree.control import (
 )
 from explore_bt.tree.leaf import Leaf, Status
 from explore_bt.tree.ports import REQUIRED, Input, Key, Output, PortUnsetError
+from explore_bt.tree.probe import Probe, attach, detach, tick
 
 __all__ = [
     "REQUIRED",
@@ -40,6 +41,7 @@ __all__ = [
     "Output",
     "Parallel",
     "PortUnsetError",
+    "Probe",
     "ReactiveFallback",
     "ReactiveSequence",
     "Repeat",
@@ -48,5 +50,8 @@ __all__ = [
     "Status",
     "Subtree",
     "Timeout",
+    "attach",
+    "detach",
     "halt",
+    "tick",
 ]

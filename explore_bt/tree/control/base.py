@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Generator, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
+
+if TYPE_CHECKING:
+    from explore_bt.tree.probe import Probe
 
 __all__ = ["ControlNode", "Decorator", "Work", "halt", "ticked"]
 
@@ -14,10 +18,30 @@ Work = Generator[Behaviour, None, Status]
 """One tick's work: yields every node it passes, returns the status."""
 
 
-def ticked(child: Behaviour) -> Work:
-    """Tick ``child`` and return its status."""
-    yield from child.tick()
-    return child.status
+def ticked(node: Behaviour, probe: Probe | None) -> Work:
+    """Tick ``node``, unless the probe answers in its place, and return its status."""
+    if probe is None:
+        yield from node.tick()
+        return node.status
+    answer = probe.before(node)
+    if answer is None:
+        yield from node.tick()
+    else:
+        _answer(node, answer)
+        yield node
+    answer = probe.after(node)
+    if answer is not None:
+        _answer(node, answer)
+    return node.status
+
+
+def _answer(node: Behaviour, status: Status) -> None:
+    """End the node's round with a status that is not its own."""
+    if status not in (Status.SUCCESS, Status.FAILURE):
+        raise ValueError(f"{status} cannot be answered for a node; answer SUCCESS or FAILURE")
+    if node.status is Status.RUNNING:
+        node.stop(Status.INVALID)
+    node.status = status
 
 
 def halt(node: Behaviour) -> None:
@@ -39,13 +63,22 @@ class ControlNode(Behaviour):
 
     A subclass says in ``work`` what one tick does; ``initialise`` is called before the first tick of a
     round. Statuses of the children stay visible until the next round begins.
+
+    Attributes:
+        probe: asked before and after every tick of a child; None: nobody is.
     """
+
+    probe: Probe | None = None
 
     def __init__(self, name: str, children: Sequence[Behaviour]) -> None:
         super().__init__(name=name)
         for child in children:
             child.parent = self
             self.children.append(child)
+
+    def ticked(self, child: Behaviour) -> Work:
+        """Tick ``child`` and return its status."""
+        return ticked(child, self.probe)
 
     @abstractmethod
     def work(self) -> Work:

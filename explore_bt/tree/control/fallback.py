@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from py_trees.common import Status
 
-from explore_bt.tree.control.base import ControlNode, Work, halt, ticked
+from explore_bt.tree.control.base import ControlNode, Work, halt
 
 __all__ = ["Fallback", "ReactiveFallback"]
 
@@ -23,7 +23,7 @@ class Fallback(ControlNode):
     def work(self) -> Work:
         """Go on from the child that was running."""
         while self._index < len(self.children):
-            status = yield from ticked(self.children[self._index])
+            status = yield from self.ticked(self.children[self._index])
             if status is not Status.FAILURE:
                 return status
             self._index += 1
@@ -39,7 +39,7 @@ class ReactiveFallback(ControlNode):
     def work(self) -> Work:
         """Tick from the first child on."""
         for child in self.children:
-            status = yield from ticked(child)
+            status = yield from self.ticked(child)
             if status is not Status.FAILURE:
                 for other in self.children:
                     if other is not child and other.status is Status.RUNNING:

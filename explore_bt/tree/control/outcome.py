@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from py_trees.common import Status
 
-from explore_bt.tree.control.base import Decorator, Work, ticked
+from explore_bt.tree.control.base import Decorator, Work
 
 __all__ = ["ForceFailure", "ForceSuccess", "Invert", "Subtree"]
 
@@ -19,7 +19,7 @@ class Subtree(Decorator):
 
     def work(self) -> Work:
         """Tick the child and translate its status."""
-        status = yield from ticked(self.child)
+        status = yield from self.ticked(self.child)
         return self.changes.get(status, status)
 
 

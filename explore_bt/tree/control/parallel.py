@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from explore_bt.tree.control.base import ControlNode, Work, ticked
+from explore_bt.tree.control.base import ControlNode, Work
 
 __all__ = ["Parallel"]
 
@@ -41,7 +41,7 @@ class Parallel(ControlNode):
         """Tick those that have not ended."""
         for index, child in enumerate(self.children):
             if index not in self._ended:
-                status = yield from ticked(child)
+                status = yield from self.ticked(child)
                 if status is not Status.RUNNING:
                     self._ended[index] = status
             verdict = self._verdict()

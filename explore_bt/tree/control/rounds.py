@@ -5,7 +5,7 @@ from __future__ import annotations
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from explore_bt.tree.control.base import Decorator, Work, ticked
+from explore_bt.tree.control.base import Decorator, Work
 
 __all__ = ["Repeat", "Retry"]
 
@@ -29,7 +29,7 @@ class Repeat(Decorator):
     def work(self) -> Work:
         """Tick the child, round after round."""
         while self._times is None or self._done < self._times:
-            status = yield from ticked(self.child)
+            status = yield from self.ticked(self.child)
             if status is not Status.SUCCESS:
                 return status
             self._done += 1
@@ -58,7 +58,7 @@ class Retry(Decorator):
     def work(self) -> Work:
         """Tick the child, attempt after attempt."""
         while self._failed <= self._retries:
-            status = yield from ticked(self.child)
+            status = yield from self.ticked(self.child)
             if status is not Status.FAILURE:
                 return status
             self._failed += 1

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from explore_bt.tree.control.base import Decorator, Work, ticked
+from explore_bt.tree.control.base import Decorator, Work
 
 __all__ = ["Timeout"]
 
@@ -38,4 +38,4 @@ class Timeout(Decorator):
         if self._now_s() >= self._deadline_s:
             self.feedback_message = f"gave up after {self._duration_s:g} s"
             return Status.FAILURE
-        return (yield from ticked(self.child))
+        return (yield from self.ticked(self.child))
