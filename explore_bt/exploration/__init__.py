@@ -46,7 +46,7 @@ from explore_bt.exploration.remains import sentences, what_remains
 from explore_bt.exploration.retrace import way_back
 from explore_bt.exploration.revisit import is_allowed, repeated_visit
 from explore_bt.exploration.tour import open_tour
-from explore_bt.exploration.travel import Travel, nearest_reaching_cell, travel_field
+from explore_bt.exploration.travel import Travel, nearest_reaching_cell, travel_field, way_lengths
 from explore_bt.exploration.view_places import ViewPlaces
 from explore_bt.exploration.view_tour import TourTaste, View, ViewSet, choose_views, first_run, order_views
 from explore_bt.exploration.waypoint import next_waypoint
@@ -93,5 +93,6 @@ __all__ = [
     "visible_unknown_area",
     "warm_up",
     "way_back",
+    "way_lengths",
     "what_remains",
 ]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from explore_bt.exploration.arguments import require_at_least, require_positive
 from explore_bt.exploration.escape import ways_out
 
-__all__ = ["Travel", "nearest_reaching_cell", "travel_field"]
+__all__ = ["Travel", "nearest_reaching_cell", "travel_field", "way_lengths"]
 
 _DIAGONAL = math.sqrt(2.0)
 
@@ -201,6 +201,29 @@ def travel_field(
         escape_m=escape_m,
     )
     return travel.field(start_cells)
+
+
+def way_lengths(
+    passable: NDArray[np.bool_], starts: NDArray[np.integer], most_cells: float = math.inf
+) -> NDArray[np.float64]:
+    """Length of the shortest way from the nearest of some cells, over eight neighbours, no corner cut.
+
+    Args:
+        passable: (rows, cols) bool; the starts are among them.
+        starts: (K, 2) row, column.
+        most_cells: beyond it lengths may be too high.
+
+    Returns:
+        (rows, cols) float64, cells; inf where no way leads.
+    """
+    padded = np.pad(passable, 1)
+    width = padded.shape[1]
+    distance = np.full(padded.shape, np.inf)
+    seeds = (np.asarray(starts, dtype=np.int64).reshape(-1, 2) + 1) @ np.array([width, 1])
+    distance.ravel()[seeds] = 0.0
+    plain = np.empty(0, dtype=np.float32)
+    _spread(padded.ravel(), width, distance.ravel(), plain, seeds, math.ceil(_DIAGONAL) + 2, most_cells)
+    return distance[1:-1, 1:-1]
 
 
 def nearest_reaching_cell(

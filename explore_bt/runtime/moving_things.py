@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from explore_bt.exploration import clearance_at
 from explore_bt.runtime.sight import Sight
-from explore_bt.types import MovingObstacle, OccupancyGrid
+from explore_bt.types import OCCUPIED, MovingObstacle, OccupancyGrid
 
 __all__ = ["MovingThings"]
 
@@ -28,8 +28,8 @@ _FEWEST = 3
 _WIDEST_M = 1.2
 _SAME_M = 0.45
 """So far from where it is expected a thing is the same."""
-_GAIN, _RATE_GAIN = 0.5, 0.2
-"""Of the filter for place and velocity: half of a surprise is believed at once."""
+_GAIN, _RATE_GAIN = 0.65, 0.3
+"""Of the filter for place and velocity: how much of a surprise is believed at once."""
 _HITS = 2
 _SURELY_M = 0.6
 """Who has come so far is somebody: people are about."""
@@ -43,6 +43,8 @@ _ABOUT_S = 60.0
 _OFF_M = 0.15
 """A return so far from everything that the map does not call free is no wall drawn a little thin."""
 _LEAST_RADIUS_M = 0.15
+_BLUR_M = 0.03
+"""By which the front of what comes is seen too far off, for noise and for the time of a sweep."""
 _STEP_M = 0.1
 
 
@@ -59,6 +61,7 @@ class _Thing:
     first_s: float
     moved_s: float
     walks: bool
+    floor: OccupancyGrid
     hits: int = 1
     has_moved: bool = False
 
@@ -68,11 +71,12 @@ class _Thing:
     def take(self, centre: NDArray[np.float64], radius_m: float, stamp_s: float) -> None:
         dt_s = max(stamp_s - self.stamp_s, 1e-3)
         surprise = centre - self.predicted(stamp_s)
-        self.xy = self.predicted(stamp_s) + _GAIN * surprise
-        self.velocity = self.velocity + _RATE_GAIN / dt_s * surprise
+        self.hits += 1
+        gain, rate_gain = _gains(self.hits)
+        self.xy = self.predicted(stamp_s) + gain * surprise
+        self.velocity = self.velocity + rate_gain / dt_s * surprise
         self.radius_m = max(radius_m, 0.8 * self.radius_m)
         self.stamp_s = stamp_s
-        self.hits += 1
         moved_m = math.dist(centre, self.first_xy)
         self.has_moved |= moved_m > max(_MOVED_M, _LEAST_MPS * (stamp_s - self.first_s))
 
@@ -109,7 +113,7 @@ class MovingThings:
         """
         is_seen_through = self._was_seen_through(sight)
         is_new = np.flatnonzero(is_seen_through | _is_on_free_floor(sight.points, grid))
-        self._follow([is_new[group] for group in _groups(sight.points[is_new])], is_seen_through, sight)
+        self._follow([is_new[group] for group in _groups(sight.points[is_new])], is_seen_through, sight, grid)
         self._sights.append(sight)
         while self._sights[0].stamp_s < sight.stamp_s - _LAGS_S[-1]:
             self._sights.popleft()
@@ -132,25 +136,38 @@ class MovingThings:
         return new
 
     def _follow(
-        self, groups: list[NDArray[np.int64]], is_seen_through: NDArray[np.bool_], sight: Sight
+        self,
+        groups: list[NDArray[np.int64]],
+        is_seen_through: NDArray[np.bool_],
+        sight: Sight,
+        grid: OccupancyGrid,
     ) -> None:
         stamp_s = sight.stamp_s
         left = list(self._things)
         for members in groups:
             group, walks = sight.points[members], int(is_seen_through[members].sum()) >= _FEWEST
-            centre = group.mean(axis=0)
-            radius_m = max(float(np.hypot(*(group - centre).T).max()), _LEAST_RADIUS_M)
+            centre, radius_m = _disc(group, sight.origin)
             same = min(left, key=lambda thing: math.dist(thing.predicted(stamp_s), centre), default=None)
             if same is not None and math.dist(same.predicted(stamp_s), centre) <= _SAME_M:
                 same.take(centre, radius_m, stamp_s)
-                same.moved_s = stamp_s
+                same.moved_s, same.floor = stamp_s, grid
                 same.walks |= walks
                 left.remove(same)
             else:
                 self._count += 1
-                still = np.zeros(2)
                 self._things.append(
-                    _Thing(self._count, centre, still, radius_m, stamp_s, centre, stamp_s, stamp_s, walks)
+                    _Thing(
+                        self._count,
+                        centre,
+                        np.zeros(2),
+                        radius_m,
+                        stamp_s,
+                        centre,
+                        stamp_s,
+                        stamp_s,
+                        walks,
+                        grid,
+                    )
                 )
         for thing in left:
             _hold(thing, sight)
@@ -159,6 +176,23 @@ class MovingThings:
             for thing in self._things
             if stamp_s - thing.stamp_s <= _followed_s(thing, sight) and stamp_s - thing.moved_s <= _HOLD_S
         ]
+
+
+def _disc(group: NDArray[np.float64], seen_from: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """Centre and radius of a body of which only the near side is seen: its front is where the returns are."""
+    middle = group.mean(axis=0)
+    radius_m = max(float(np.hypot(*(group - middle).T).max()), _LEAST_RADIUS_M)
+    along = (middle - seen_from) / max(math.dist(middle, seen_from), 1e-6)
+    front_m = float(((middle - group) @ along).max())
+    return middle + max(radius_m - front_m - _BLUR_M, 0.0) * along, radius_m
+
+
+def _gains(hits: int) -> tuple[float, float]:
+    """Of place and velocity: while hits are few, those of the line of least squares through them all."""
+    return (
+        max(_GAIN, 2.0 * (2 * hits - 1) / (hits * (hits + 1))),
+        max(_RATE_GAIN, 6.0 / (hits * (hits + 1))),
+    )
 
 
 def _followed_s(thing: _Thing, sight: Sight) -> float:
@@ -174,14 +208,25 @@ def _hold(thing: _Thing, sight: Sight) -> None:
         return
     expected = thing.predicted(sight.stamp_s)
     near = sight.points[np.hypot(*(sight.points - expected).T) <= thing.radius_m + _STEP_M]
+    near = near[~_is_drawn(near, thing.floor)]
     if len(near) >= _FEWEST:
-        thing.take(near.mean(axis=0), thing.radius_m, sight.stamp_s)  # a wall beside it must not widen it
+        thing.take(_disc(near, sight.origin)[0], thing.radius_m, sight.stamp_s)  # a wall must not widen it
 
 
 def _is_on_free_floor(points: NDArray[np.float64], grid: OccupancyGrid) -> NDArray[np.bool_]:
     if not len(points):
         return np.zeros(0, dtype=np.bool_)
     return np.asarray(clearance_at(grid, points, 2.0 * _OFF_M) > _OFF_M)
+
+
+def _is_drawn(points: NDArray[np.float64], floor: OccupancyGrid) -> NDArray[np.bool_]:
+    """(N,) bool: whether points lie at what a map calls occupied, give or take ``_OFF_M``."""
+    reach = round(_OFF_M / floor.resolution_m)
+    around = np.stack(np.meshgrid(*2 * [np.arange(-reach, reach + 1)]), axis=-1).reshape(-1, 2)
+    at = floor.cells_of(points)[:, None] + around
+    inside = np.all((at >= 0) & (at < floor.shape), axis=-1)
+    rows, cols = np.where(inside[..., None], at, 0).transpose(2, 0, 1)
+    return np.asarray((inside & (floor.cells[rows, cols] == OCCUPIED)).any(axis=1))
 
 
 def _groups(points: NDArray[np.float64]) -> list[NDArray[np.int64]]:

@@ -25,6 +25,7 @@ class People:
     def forget(self) -> None:
         """The scans seen so far no longer lie where the pose says: a loop closure moved it."""
         self._things.forget()
+        self._floor = HiddenFloor()
 
     def around(
         self, scan: Scan2D, pose: Pose2, twist: Twist2, points: NDArray[np.float64], grid: OccupancyGrid

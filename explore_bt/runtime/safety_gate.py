@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from explore_bt.interfaces import HeldBy, Surroundings
 from explore_bt.runtime.clearance_window import ClearanceWindow
+from explore_bt.runtime.walking_distance import WalkingDistance, spare_of_walkers_m
 from explore_bt.runtime.way_to_rest import WayToRest, brake_velocities, way_to_rest
 from explore_bt.types import MotionLimits, MotionState, Pose2, Twist2
 
@@ -45,14 +46,18 @@ MOST_BEND = 4.0
 """1/m: a robot that bends more sharply is turning on the spot."""
 WALKING_MPS = 1.6
 """How fast a moving thing may come, from any side: a brisk walk."""
-AT_REST_MPS = 0.03
+STARTING_MPS2, VELOCITY_OFF_MPS = 2.5, 0.5
+"""How quickly it may start, stop or turn, and how wrong the velocity it is followed with may be."""
+AT_REST_MPS = 0.045
 """Below this the robot counts as standing: what walks into it then was not run into."""
 MOVING_MARGIN_M = 0.05
 SURE_S = 0.3
 """Held by someone at rest, the robot sets off only after so long without them: who is near is easily lost."""
+TOUCHED_S = 0.6
+"""The same after someone has come up to the robot: nobody is seen who stands against the lidar."""
 BODY_M = 0.25
 """Radius of who may stand unseen behind a corner."""
-CAUTIOUS_MPS = 0.15
+CAUTIOUS_MPS = 0.14
 """So slow the robot goes on, though someone might step out: else it would never pass a door."""
 BESIDE_M = 0.15
 """Returns so near to what was seen of a moving thing are its own."""
@@ -85,7 +90,9 @@ class SafetyGate:
         self._window = ClearanceWindow(LOOK_AHEAD_M)
         self._is_held = False
         self._around: Surroundings | None = None
-        self._someone_s = -math.inf
+        self._from_moving: WalkingDistance | None = None
+        self._from_hidden: WalkingDistance | None = None
+        self._unsure_until_s = -math.inf
         self._scans: deque[NDArray[np.float64]] = deque(maxlen=max(count for count, _ in VOTES))
 
     def see(self, surroundings: Surroundings, near: Pose2) -> None:
@@ -102,6 +109,8 @@ class SafetyGate:
             is_near &= np.hypot(*(points - thing.xy).T) > thing.radius_m + BESIDE_M
         self._scans.append(np.ascontiguousarray(points[is_near]))
         self._window.cut(surroundings.grid, near, points)
+        self._from_moving = _walking_from_moving(surroundings, near)
+        self._from_hidden = _walking_from_hidden(surroundings, near)
 
     def forget_scans(self) -> None:
         """The scans seen so far no longer lie where the pose says: a loop closure moved it."""
@@ -154,29 +163,43 @@ class SafetyGate:
         fault = self._fault_by_moving(way, now_s, self._around)
         fault = fault or self._fault_by_hidden(way, now_s, self._around)
         if fault:
-            self._someone_s = now_s
-        elif now_s - self._someone_s < SURE_S and way.speeds_mps[0] < AT_REST_MPS < way.speeds_mps.max():
+            self._unsure_until_s = max(self._unsure_until_s, now_s + SURE_S)
+        elif now_s < self._unsure_until_s and way.speeds_mps[0] < AT_REST_MPS < way.speeds_mps.max():
             fault = "someone was near a moment ago"
         return fault
 
     def _fault_by_moving(self, way: WayToRest, now_s: float, around: Surroundings) -> str:
-        here, ahead = way.poses[0, :2], way.poses[_until(way.speeds_mps, AT_REST_MPS), :2]
-        times_s = way.times_s[: len(ahead)] + now_s
-        for thing in around.moving:
-            away_m = np.hypot(*(ahead - thing.xy).T) - thing.radius_m - self._radius_m
-            spare_m = away_m - WALKING_MPS * (times_s - thing.stamp_s) - MOVING_MARGIN_M
-            here_m = math.dist(thing.xy, here.tolist()) - thing.radius_m - self._radius_m
-            end_m = math.dist(thing.xy, way.poses[-1, :2].tolist()) - thing.radius_m - self._radius_m
-            if (spare_m.size and spare_m.min() < 0.0) or end_m < min(here_m, MOVING_MARGIN_M):
-                return f"someone {max(here_m, 0.0):.1f} m away could be met before the robot stands"
+        if self._from_moving is None:
+            return ""
+        away_m = self._from_moving.to(way.poses[:, :2]) - self._radius_m
+        if away_m[0] < 0.0:
+            self._unsure_until_s = now_s + TOUCHED_S
+        moving = _until(way.speeds_mps, AT_REST_MPS)
+        times_s = now_s + way.times_s[moving]
+        spare_m = np.maximum(
+            away_m[moving] - WALKING_MPS * (times_s - around.stamp_s),
+            self._spare_in_the_open_m(way.poses[moving, :2], times_s, around),
+        )
+        if (spare_m.size and spare_m.min() < MOVING_MARGIN_M) or away_m[-1] < min(away_m[0], MOVING_MARGIN_M):
+            return f"someone {max(away_m[0], 0.0):.1f} m away could be met before the robot stands"
         return ""
 
+    def _spare_in_the_open_m(
+        self, places: NDArray[np.float64], times_s: NDArray[np.float64], around: Surroundings
+    ) -> NDArray[np.float64]:
+        walkers = np.array(
+            [(*thing.xy, *thing.velocity_mps, thing.radius_m, thing.stamp_s) for thing in around.moving]
+        )
+        spare_m = spare_of_walkers_m(places, times_s, walkers, WALKING_MPS, STARTING_MPS2, VELOCITY_OFF_MPS)
+        return spare_m - self._radius_m
+
     def _fault_by_hidden(self, way: WayToRest, now_s: float, around: Surroundings) -> str:
-        ahead = way.poses[_until(way.speeds_mps, CAUTIOUS_MPS)]
-        if not len(ahead) or not len(around.hidden):
+        fast = _until(way.speeds_mps, CAUTIOUS_MPS)
+        ahead = way.poses[fast, :2]
+        if not len(ahead) or self._from_hidden is None:
             return ""
-        away_m = _nearest_point_m(ahead, around.hidden) - BODY_M - self._radius_m
-        walked_m = WALKING_MPS * (now_s + way.times_s[: len(ahead)] - around.stamp_s)
+        away_m = self._from_hidden.to(ahead) - self._radius_m
+        walked_m = WALKING_MPS * (now_s + way.times_s[fast] - around.stamp_s)
         if (away_m - walked_m).min() >= 0.0:
             return ""
         return "someone may step out before the robot is slow"
@@ -201,6 +224,21 @@ class SafetyGate:
             if fault := _shortfall(room_m, needed_m + margin_m, obstacle, gain_m if count > 1 else 0.0):
                 return fault
         return ""
+
+
+def _walking_from_moving(around: Surroundings, near: Pose2) -> WalkingDistance | None:
+    """From everyone who moves, and wherever those seen a moment ago may be by now."""
+    if not around.moving:
+        return None
+    walked_m = [WALKING_MPS * max(around.stamp_s - thing.stamp_s, 0.0) for thing in around.moving]
+    radii_m = np.array([thing.radius_m for thing in around.moving]) + walked_m
+    return WalkingDistance(around.grid, near, np.array([thing.xy for thing in around.moving]), radii_m)
+
+
+def _walking_from_hidden(around: Surroundings, near: Pose2) -> WalkingDistance | None:
+    if not len(around.hidden):
+        return None
+    return WalkingDistance(around.grid, near, around.hidden, np.full(len(around.hidden), BODY_M))
 
 
 def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str, gain_m: float = 0.0) -> str:

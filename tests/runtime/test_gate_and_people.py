@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from explore_bt.interfaces import HeldBy, Surroundings
-from explore_bt.runtime.safety_gate import AT_REST_MPS, SafetyGate
+from explore_bt.runtime.safety_gate import AT_REST_MPS, STARTING_MPS2, VELOCITY_OFF_MPS, SafetyGate
 from explore_bt.testing.fake_robot import open_floor
 from explore_bt.types import MotionState, MovingObstacle, Pose2, Twist2
 
@@ -19,11 +19,15 @@ FLOOR = open_floor(30.0, 0.1)
 
 
 class Chase:
-    """A robot that wants to drive straight on, and people who walk up to it at a constant speed."""
+    """A robot that wants to drive straight on, and people who turn on it as quickly as they can.
 
-    def __init__(self, people: np.ndarray, speed_mps: float) -> None:
+    They begin with ``velocities``; the gate is told others, wrong by as much as it allows for.
+    """
+
+    def __init__(self, people: np.ndarray, speed_mps: float, velocities: np.ndarray | None = None) -> None:
         self.gate, self.pose, self.motion = SafetyGate(RADIUS, LIMITS), Pose2.identity(), MotionState()
         self.people, self.speed_mps = people.astype(float), speed_mps
+        self.velocities = np.zeros_like(self.people) if velocities is None else velocities
         self.time_s, self.steps = 0.0, 0
         self.held_by = HeldBy.NOTHING
         self.fastest_touch_mps = 0.0
@@ -31,8 +35,8 @@ class Chase:
     def step(self, wanted: Twist2) -> None:
         if self.steps % SCAN_EVERY == 0:
             moving = tuple(
-                MovingObstacle(k, (x, y), (0.0, 0.0), BODY, self.time_s)
-                for k, (x, y) in enumerate(self.people.tolist())
+                MovingObstacle(k, (x, y), (vx, vy), BODY, self.time_s)
+                for k, (x, y, vx, vy) in enumerate(np.hstack([self.people, self._told()]).tolist())
             )
             self.gate.see(Surroundings(self.time_s, np.empty((0, 2)), FLOOR, moving), self.pose)
         wish = towards(wanted, self.motion)
@@ -42,6 +46,19 @@ class Chase:
         self.motion = decision.motion
         self.time_s += DT
         self.steps += 1
+
+    def _told(self) -> np.ndarray:
+        """Velocities that lead away from the robot more than the true ones."""
+        off = self.people - np.array(self.pose.xy)
+        return self.velocities + VELOCITY_OFF_MPS * off / np.maximum(np.hypot(*off.T)[:, None], 1e-9)
+
+    def _walk(self, dt_s: float) -> None:
+        off = np.array(self.pose.xy) - self.people
+        wanted = self.speed_mps * off / np.maximum(np.hypot(*off.T)[:, None], 1e-9)
+        change = wanted - self.velocities
+        most = STARTING_MPS2 * dt_s
+        self.velocities += change * np.minimum(1.0, most / np.maximum(np.hypot(*change.T)[:, None], 1e-9))
+        self.people += self.velocities * dt_s
 
     def _move(self, following: MotionState) -> None:
         before, parts = self.motion.twist, 5
@@ -56,25 +73,29 @@ class Chase:
                 self.pose.y + step * math.sin(yaw),
                 self.pose.yaw_rad + w * DT / parts,
             )
-            off = np.array(self.pose.xy) - self.people
-            away = np.hypot(*off.T)[:, None]
-            self.people += off / np.maximum(away, 1e-9) * min(self.speed_mps * DT / parts, 1.0)
+            self._walk(DT / parts)
+            away = np.hypot(*(np.array(self.pose.xy) - self.people).T)
             if float(away.min()) < RADIUS + BODY:
                 self.fastest_touch_mps = max(self.fastest_touch_mps, abs(v))
 
 
 @given(
-    st.lists(st.tuples(st.floats(-math.pi, math.pi), st.floats(1.0, 6.0)), min_size=1, max_size=4),
+    st.lists(
+        st.tuples(st.floats(-math.pi, math.pi), st.floats(1.0, 6.0), st.floats(-math.pi, math.pi)),
+        min_size=1,
+        max_size=4,
+    ),
     st.floats(0.3, 1.6),
     st.floats(-0.3, 0.5),
     st.floats(-1.2, 1.2),
 )
 @settings(deadline=None, max_examples=80)
 def test_whoever_comes_the_robot_stands_before_they_meet(
-    places: list[tuple[float, float]], speed: float, v: float, w: float
+    places: list[tuple[float, float, float]], speed: float, v: float, w: float
 ) -> None:
-    people = np.array([(away * math.cos(at), away * math.sin(at)) for at, away in places])
-    chase = Chase(people, speed)
+    people = np.array([(away * math.cos(at), away * math.sin(at)) for at, away, _ in places])
+    courses = np.array([(math.cos(course), math.sin(course)) for _, _, course in places])
+    chase = Chase(people, speed, speed * courses)
     for _ in range(100):
         chase.step(Twist2(v, w))
     assert chase.fastest_touch_mps <= AT_REST_MPS
@@ -101,6 +122,32 @@ def test_the_nearer_someone_is_the_slower_it_passes() -> None:
     assert fastest[0] < 0.25 < 0.45 < fastest[-1]
 
 
+def test_who_walks_away_lets_the_robot_go_faster_than_who_comes() -> None:
+    fastest = []
+    for course in (-1.2, 0.0, 1.2):
+        chase, speeds = Chase(np.array([[1.6, 0.0]]), 0.0), [0.0]
+        for _ in range(40):
+            chase.people, chase.velocities = np.array([[chase.pose.x + 1.6, 0.0]]), np.array([[course, 0.0]])
+            chase.step(Twist2(0.5, 0.0))
+            speeds.append(chase.motion.twist.linear_mps)
+        fastest.append(max(speeds))
+    assert fastest[0] < fastest[2]
+    assert fastest == sorted(fastest)
+
+
+def test_who_has_come_up_to_the_robot_is_waited_for_although_nobody_is_seen() -> None:
+    chase = Chase(np.array([[0.49, 0.0]]), 0.0)
+    for _ in range(10):
+        chase.step(Twist2(0.5, 0.0))
+    chase.people += 20.0
+    for _ in range(10):
+        chase.step(Twist2(0.5, 0.0))
+        assert chase.motion.twist.linear_mps <= AT_REST_MPS + 1e-9
+    for _ in range(20):
+        chase.step(Twist2(0.5, 0.0))
+    assert chase.motion.twist.linear_mps > 0.2
+
+
 def test_turning_on_the_spot_is_always_allowed() -> None:
     chase = Chase(np.array([[0.6, 0.0]]), 0.0)
     for _ in range(20):
@@ -109,11 +156,11 @@ def test_turning_on_the_spot_is_always_allowed() -> None:
 
 
 def test_who_is_lost_from_sight_beside_a_standing_robot_holds_it_a_little_longer() -> None:
-    chase = Chase(np.array([[0.8, 0.0]]), 0.0)
+    chase = Chase(np.array([[0.62, 0.0]]), 0.0)
     for _ in range(40):
         chase.step(Twist2(0.5, 0.0))
     chase.people += 20.0
-    for _ in range(6):
+    for _ in range(4):
         chase.step(Twist2(0.5, 0.0))
         assert chase.motion.twist.linear_mps <= AT_REST_MPS + 1e-9
     for _ in range(20):

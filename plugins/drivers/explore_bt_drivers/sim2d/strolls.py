@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from explore_bt.errors import WorldError
 from explore_bt.exploration import Travel
-from explore_bt_drivers.sim2d.walks import Walk, at_speed
+from explore_bt_drivers.sim2d.strides import as_people_walk
+from explore_bt_drivers.sim2d.walks import Walk
 from explore_bt_drivers.world import World, with_every_stand
 from explore_bt_drivers.world.index import way_fits
 from explore_bt_drivers.world.observable import reachable_cells
@@ -54,7 +55,7 @@ class Strolls:
 
     def walk(self, rng: np.random.Generator) -> Walk:
         """Somebody's walk; ``rng`` is theirs alone."""
-        return Walk(self._radius_m, at_speed(self._points(rng), self._speed_mps))
+        return Walk(self._radius_m, as_people_walk(self._points(rng), self._speed_mps))
 
     def _joined(self, cells: NDArray[np.int64], beside: tuple[float, float]) -> NDArray[np.int64]:
         """(N, 2) cells that ways lead to from the one nearest to a place; none if there are no cells."""
