@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -10,11 +11,13 @@ from typing import Any, TypeVar
 
 from explore_bt.debug.commands import Command
 from explore_bt.debug.herald import Errands
-from explore_bt.errors import DebugError
+from explore_bt.errors import DebugError, UserError
 
 __all__ = ["CommandQueue"]
 
 T = TypeVar("T")
+
+_log = logging.getLogger("explore_bt")
 
 MOST_WAITING = 1000
 _PATIENCE_S = 2.0
@@ -52,8 +55,12 @@ class CommandQueue:
             patience_s = 0.0
             try:
                 answer = do(command)
-            except Exception as fault:  # a client's fault must not become the tick thread's
-                self._deliver(future, fault, failed=True)
+            except UserError as refusal:
+                self._deliver(future, refusal, failed=True)
+            except Exception as fault:  # nonsense in a command must not become the tick thread's
+                _log.exception("%s was not understood", type(command).__name__)
+                nonsense = DebugError(f"{type(command).__name__} cannot be done: {fault!r}")
+                self._deliver(future, nonsense, failed=True)
             else:
                 self._deliver(future, answer, failed=False)
 

@@ -19,10 +19,21 @@ from explore_bt.errors import DebugError
 TWO = """
 format: explore-bt/1
 name: two
-params: {}
 robots:
-  ada: {start: [1 m, 1 m, 0 deg], driver: {use: sim2d, world: box.yaml}, slam: ground_truth, planner: grid_astar, controller: pursuit, tree: short}
-  bob: {start: [4 m, 2 m, 0 deg], driver: {use: sim2d, world: box.yaml}, slam: ground_truth, planner: grid_astar, controller: pursuit, tree: long}
+  ada:
+    start: [1 m, 1 m, 0 deg]
+    driver: {use: sim2d, world: box.yaml}
+    slam: ground_truth
+    planner: grid_astar
+    controller: pursuit
+    tree: short
+  bob:
+    start: [4 m, 2 m, 0 deg]
+    driver: {use: sim2d, world: box.yaml}
+    slam: ground_truth
+    planner: grid_astar
+    controller: pursuit
+    tree: long
 trees:
   short: {wait: {duration: 0.3 s}}
   long: {sequence: [wait: {duration: 0.6 s}, wait: {duration: 0.3 s}]}
@@ -136,7 +147,7 @@ def test_of_two_robots_the_one_that_is_meant_stops_the_run(debug):
     run = debug(head=TWO, tree="")
     with pytest.raises(DebugError, match='no node is called "short"'):
         run.do(AddBreakpoint(Breakpoint("short", robot="bob")))
-    with pytest.raises(DebugError, match='no robot "bib"; did you mean "bob"?'):
+    with pytest.raises(DebugError, match='no robot "bib"; did you mean "bob"'):
         run.do(AddBreakpoint(Breakpoint("wait", robot="bib")))
     run.do(AddBreakpoint(Breakpoint("*", status="success", robot="bob", condition="robot == 'bob'")))
     state = run.go(Resume())
