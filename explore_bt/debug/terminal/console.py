@@ -163,6 +163,8 @@ class Console:
         if self._session.state().over:
             raise DebugError("the run is over; tree, print, where, map and back still show it")
         self._ask(command)
+        if isinstance(command, Resume) and self._reader.is_interactive:
+            self._say("running; Ctrl-C pauses, other commands are heard meanwhile")
         self._wait()
 
     def _wait(self) -> None:
@@ -177,11 +179,13 @@ class Console:
                 self._news.wait(_LOOK_S)
                 if (line := self._reader.typed_meanwhile()) is not None:
                     self.do(line)
-                    return
+                    if (state := self._session.state()).paused or state.over:
+                        return  # what was done has told so
             except Terminated:
                 raise
             except KeyboardInterrupt:
                 self._interrupt()
+        self._interrupts = 0
         if not self._has_left:
             self._say(*state_lines(self._session.state(), len(self._robots())))
 
@@ -281,13 +285,16 @@ class Console:
 
     def _tree(self, rest: str) -> None:
         words = words_of(rest)
-        state = self._session.state()
-        here = state.path if self._past is None and state.robot in ("", self._view().robot) else ""
-        self._say(*tree_lines(self._infos(), self._view().nodes, words[0] if words else "", here))
+        pattern = words[0] if words else ""
+        lines = list(tree_lines(self._infos(), self._view().nodes, pattern, self._paused_at()))
+        if not lines:
+            ends = {info.name for info in self._infos()}
+            raise DebugError(f'no node is called "{pattern}"; {did_you_mean(pattern, ends, "nodes")}')
+        self._say(*lines)
 
     def _where(self, _: str) -> None:
         tick, robot = self._snapshot()
-        self._say(*where_lines(tick, robot, self._infos(), self._view().nodes))
+        self._say(*where_lines(tick, robot, self._infos(), self._view().nodes, self._paused_at()))
 
     def _map(self, _: str) -> None:
         tick, robot = self._snapshot()
@@ -327,6 +334,11 @@ class Console:
         self._robot = rest or self._robot
         for name in names:
             self._say(f"{'> ' if name == self._shown_robot() else '  '}{name}")
+
+    def _paused_at(self) -> str:
+        """Path of the node the run is paused at, if that is what is looked at."""
+        state = self._session.state()
+        return state.path if self._past is None and state.robot == self._shown_robot() else ""
 
     def _robots(self) -> tuple[str, ...]:
         return tuple(self._history.run.trees) if self._history.run else ()
