@@ -38,9 +38,9 @@ from explore_bt.debug.sight import Sight
 from explore_bt.debug.state import DebugState
 from explore_bt.debug.stride import Stride
 from explore_bt.errors import DebugError
-from explore_bt.interfaces import Event
+from explore_bt.interfaces import Event, NodeState
 from explore_bt.runtime import Attendant, Robot, Runner
-from explore_bt.tree import Probe, Status
+from explore_bt.tree import Probe, Status, status_word
 
 __all__ = ["DebugSession"]
 
@@ -278,7 +278,8 @@ class DebugSession(Attendant):
 
     def _look(self, command: Look) -> View:
         robot = self._robot(command.robot)
-        return View(robot.name, robot.node_states(), dict(robot.blackboard))
+        nodes = tuple(NodeState(status_word(node.status), node.feedback_message) for node in robot.tree.nodes)
+        return View(robot.name, nodes, dict(robot.blackboard))
 
     def _robot(self, name: str) -> Robot:
         return self._places.robot(name or self._state.robot or next(iter(self._places.robots)))
