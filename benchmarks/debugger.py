@@ -3,7 +3,7 @@
 The same mission is driven alone, with a debugger that watches nothing, and with one whose breakpoints are
 looked at but never stop the run; in turn, so that the machine's moods fall on all. The runs decide the
 same, tick by tick, so each tick's time is the least of its runs. A tick is everything between two of them:
-simulation, SLAM, control, tree, recording. Deciding is the tree alone.
+simulation, SLAM, control, tree, recording. Deciding is the tree alone. Times are CPU of the tick's thread.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ WATCHED = (
 
 
 class _Times:
-    """Seconds of every tick, and of deciding in it."""
+    """CPU seconds of every tick, and of deciding in it."""
 
     def __init__(self) -> None:
         self.ticks: list[float] = []
@@ -42,12 +42,12 @@ class _Times:
         self._last = 0.0
 
     def begin(self, runner: Runner) -> None:
-        self._last = time.perf_counter()
+        self._last = time.thread_time()
         for robot in runner.robots:
             self._clock(robot)
 
     def on_period(self) -> None:
-        now = time.perf_counter()
+        now = time.thread_time()
         self.ticks.append(now - self._last)
         self._last = now
 
@@ -55,9 +55,9 @@ class _Times:
         decide = robot.decide
 
         def timed() -> Status:
-            begun = time.perf_counter()
+            begun = time.thread_time()
             status = decide()
-            self.decisions.append(time.perf_counter() - begun)
+            self.decisions.append(time.thread_time() - begun)
             return status
 
         robot.decide = timed  # type: ignore[method-assign]  # to look at it from outside is the point

@@ -73,8 +73,8 @@ class Stride:
         return self._passed(stepped) if self._kind is StepKind.TICK else ""
 
     def next_node(self, place: Place) -> str:
-        """A node was ticked: why to pause after it; empty if there is no reason to."""
-        if self._kind in (None, StepKind.TICK) or not fnmatchcase(place.robot.name, self._robot):
+        """A node was ticked that is watched: why to pause after it; empty if there is no reason to."""
+        if not fnmatchcase(place.robot.name, self._robot):
             return ""
         if self._kind is StepKind.NODE:
             return self._passed(f"stepped {_counted(self._count, 'node')} to after {place}")

@@ -189,6 +189,7 @@ def test_wrong_input_is_told_as_by_run_and_nothing_is_written(folder):
     assert (shown.exit_code, 'there is no parameter "frist"' in shown.stderr) == (2, True)
     shown = debug("c", "q", arguments=("--set", "radius=1.5 m"))
     assert shown.exit_code == 2, shown.output
+    assert "over" not in shown.stdout
     assert set(folder.iterdir()) == before
 
 

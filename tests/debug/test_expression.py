@@ -32,6 +32,9 @@ class Trap:
 
     __hash__ = None  # type: ignore[assignment]
 
+    def __bool__(self) -> bool:
+        raise RuntimeError("neither true nor false")
+
     @property
     def code(self) -> int:
         raise AssertionError("a property is code, and code is not run")
@@ -149,6 +152,12 @@ def test_what_has_no_value_says_where_and_why(text, complaint):
     with pytest.raises(ExpressionError) as fault:
         value(text)
     assert complaint in str(fault.value)
+
+
+@pytest.mark.parametrize("text", ["$trap", "not $trap", "$trap and true", "$grid"])
+def test_what_is_neither_true_nor_false_says_so(text):
+    with pytest.raises(ExpressionError, match="neither true nor false"):
+        Expression(text).holds(Seen())
 
 
 def test_a_long_list_is_not_searched():

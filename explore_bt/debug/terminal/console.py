@@ -186,7 +186,9 @@ class Console:
             except KeyboardInterrupt:
                 self._interrupt()
         self._interrupts = 0
-        if not self._has_left:
+        if self._session.state().over and self._history.run is None:
+            self._has_left = True  # it never began; the command tells why
+        elif not self._has_left:
             self._say(*state_lines(self._session.state(), len(self._robots())))
 
     def _interrupt(self) -> None:
