@@ -108,8 +108,8 @@ class Breakpoints:
             if self._holds(each, place):
                 each.hits += 1
                 self.have_news = True
-                if each.hits > each.breakpoint.ignore and not stops:
-                    stops = f"breakpoint {each.number}: {_told(place, moment)}"
+                if each.hits > each.breakpoint.ignore:
+                    stops = stops or f"breakpoint {each.number}: {_told(place, moment)}"
                     if each.breakpoint.once:
                         self.remove(each.number)
         return stops

@@ -57,7 +57,7 @@ class CommandQueue:
         except UserError as refusal:
             self._deliver(future, refusal, failed=True)
         except Exception as fault:  # nonsense in a command must not become the tick thread's
-            _log.exception("%s was not understood", type(command).__name__)
+            _log.debug("%s was not understood", type(command).__name__, exc_info=True)
             nonsense = DebugError(f"{type(command).__name__} cannot be done: {fault!r}")
             self._deliver(future, nonsense, failed=True)
         else:

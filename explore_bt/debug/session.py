@@ -166,6 +166,9 @@ class DebugSession(Attendant):
     def _stand_still(self, why: str, place: Place | None = None, moment: Moment | None = None) -> None:
         runner = self._attended()
         self._stride.end()
+        if self._is_to_stop():
+            self._pausing = ""
+            return
         self._pausing = why
         self._show(
             paused=True,
@@ -178,7 +181,7 @@ class DebugSession(Attendant):
         begun_s = runner.now_s
         if not runner.is_simulated:
             self._note(f"the robots are held: {why}")
-        while self._pausing and not runner.stop.is_raised:
+        while self._pausing and not self._is_to_stop():
             self._answer_while_paused(_LOOK_UP_S if runner.is_simulated else 0.0)
             if self._pausing and not runner.is_simulated:
                 runner.hold(f"held by the debugger: {why}")
@@ -186,6 +189,9 @@ class DebugSession(Attendant):
             self._go_on(Stride())
         if not runner.is_simulated:
             self._note(f"the robots go on after {runner.now_s - begun_s:.1f} s")
+
+    def _is_to_stop(self) -> bool:
+        return self._attended().stop.is_raised
 
     def _answer_while_paused(self, patience_s: float) -> None:
         """What waits behind a step is meant for the place it leads to."""

@@ -37,12 +37,8 @@ class Stride:
         if not any(fnmatchcase(name, step.robot) for name in places.robots):
             places.robot(step.robot)
         stride = cls()
-        stride._kind, stride._left, stride._count, stride._robot = (
-            step.kind,
-            step.count,
-            step.count,
-            step.robot,
-        )
+        stride._kind, stride._robot = step.kind, step.robot
+        stride._left = stride._count = step.count
         if step.kind is StepKind.CHANGE:
             stride._last = {id(place.node): place.status for place in places}
         return stride

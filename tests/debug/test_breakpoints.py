@@ -124,6 +124,14 @@ def test_one_that_is_for_once_is_gone_after_its_first_stop(debug):
     assert run.session.state().breakpoints == ()
 
 
+def test_of_two_at_one_place_the_first_is_named_and_both_count(debug):
+    run = debug()
+    for _ in range(2):
+        run.do(AddBreakpoint(Breakpoint("first", once=True)))
+    assert run.go(Resume()).why.startswith("breakpoint 1: ")
+    assert run.session.state().breakpoints == ()
+
+
 def test_a_condition_sees_the_robot_and_the_node(debug):
     run = debug()
     condition = "$goal.pose.x > 3 and x > 2 and speed > 0.1 and status == 'running' and 'to (' in message"

@@ -26,6 +26,7 @@ from explore_bt.debug.commands import (
 )
 from explore_bt.debug.history import History
 from explore_bt.debug.session import DebugSession
+from explore_bt.debug.terminal.focus import Focus
 from explore_bt.debug.terminal.parsing import (
     breakpoint_of,
     force_of,
@@ -45,7 +46,6 @@ from explore_bt.debug.terminal.views import (
     where_lines,
 )
 from explore_bt.errors import DebugError
-from explore_bt.interfaces import NodeInfo, RobotSnapshot, RunInfo, TickSnapshot
 from explore_bt.mission.words import did_you_mean
 
 __all__ = ["Console", "Terminated"]
@@ -74,12 +74,11 @@ class Console:
     def __init__(self, session: DebugSession, history: History, reader: LineReader, screen: Screen) -> None:
         self._session = session
         self._history = history
+        self._focus = Focus(history)
         self._reader = reader
         self._screen = screen
         self._news = threading.Event()
         self._last = ""
-        self._robot = ""
-        self._past: int | None = None
         self._has_left = False
         self._interrupts = 0
         self._do: Mapping[str, Callable[[str], None]] = {
@@ -159,7 +158,7 @@ class Console:
     # --- the run -----------------------------------------------------------------------------------------
 
     def _go(self, command: Command[None]) -> None:
-        self._past = None
+        self._focus.return_to_present()
         if self._session.state().over:
             raise DebugError("the run is over; tree, print, where, map and back still show it")
         self._ask(command)
@@ -186,10 +185,10 @@ class Console:
             except KeyboardInterrupt:
                 self._interrupt()
         self._interrupts = 0
-        if self._session.state().over and self._history.run is None:
+        if self._session.state().over and not self._focus.has_begun:
             self._has_left = True  # it never began; the command tells why
         elif not self._has_left:
-            self._say(*state_lines(self._session.state(), len(self._robots())))
+            self._say(*state_lines(self._session.state(), len(self._focus.robots)))
 
     def _interrupt(self) -> None:
         self._interrupts += 1
@@ -202,7 +201,7 @@ class Console:
     def _pause(self, _: str) -> None:
         state = self._session.state()
         if state.paused or state.over:
-            self._say(*state_lines(state, len(self._robots())))
+            self._say(*state_lines(state, len(self._focus.robots)))
         else:
             self._ask(Pause())
             self._wait()
@@ -240,8 +239,11 @@ class Console:
     def _delete(self, rest: str) -> None:
         if not rest:
             raise DebugError("delete which? For example: delete 1, or delete all")
-        self._ask(RemoveBreakpoint(0 if rest == "all" else number_of(rest, "a breakpoint") or -1))
-        self._say("all breakpoints are deleted" if rest == "all" else f"breakpoint {rest} is deleted")
+        number = 0 if rest == "all" else number_of(rest, "a breakpoint")
+        if not number and rest != "all":
+            raise DebugError("breakpoints are numbered from 1; breaks lists them")
+        self._ask(RemoveBreakpoint(number))
+        self._say(f"breakpoint {number} is deleted" if number else "all breakpoints are deleted")
 
     def _enable(self, rest: str, *, enabled: bool) -> None:
         self._ask(EnableBreakpoint(number_of(rest, "a breakpoint"), enabled))
@@ -274,107 +276,71 @@ class Console:
     # --- looking -----------------------------------------------------------------------------------------
 
     def _print(self, rest: str) -> None:
+        board = self._view().blackboard
+        entry = rest.removeprefix("$")
         if not rest:
-            self._say(*board_lines(self._view().blackboard))
-        elif rest.isidentifier() and rest in self._view().blackboard:
-            self._say(value_text(self._view().blackboard[rest]))
-        elif rest.startswith("$") and rest[1:].isidentifier() and rest[1:] in self._view().blackboard:
-            self._say(value_text(self._view().blackboard[rest[1:]]))
-        elif self._past is not None:
+            self._say(*board_lines(board))
+        elif entry.isidentifier() and entry in board:
+            self._say(value_text(board[entry]))
+        elif not self._focus.is_present:
             raise DebugError("an expression has a value only now; look at entries here, or say now")
         else:
-            self._say(value_text(self._ask(Evaluate(rest, self._robot))))
+            self._say(value_text(self._ask(Evaluate(rest, self._focus.chosen))))
 
     def _tree(self, rest: str) -> None:
-        words = words_of(rest)
-        pattern = words[0] if words else ""
-        lines = list(tree_lines(self._infos(), self._view().nodes, pattern, self._paused_at()))
+        pattern = next(iter(words_of(rest)), "")
+        infos = self._focus.infos(self._robot())
+        lines = list(tree_lines(infos, self._view().nodes, pattern, self._paused_at()))
         if not lines:
-            ends = {info.name for info in self._infos()}
-            raise DebugError(f'no node is called "{pattern}"; {did_you_mean(pattern, ends, "nodes")}')
+            hint = did_you_mean(pattern, {info.name for info in infos}, "nodes")
+            raise DebugError(f'no node is called "{pattern}"; {hint}')
         self._say(*lines)
 
     def _where(self, _: str) -> None:
-        tick, robot = self._snapshot()
-        self._say(*where_lines(tick, robot, self._infos(), self._view().nodes, self._paused_at()))
+        tick, robot = self._focus.tick(), self._robot()
+        infos, nodes = self._focus.infos(robot), self._view().nodes
+        self._say(*where_lines(tick, self._focus.snapshot(robot), infos, nodes, self._paused_at()))
 
     def _map(self, _: str) -> None:
-        tick, robot = self._snapshot()
-        trail = self._history.trail(robot.robot, tick.index)
-        self._say(*map_lines(robot, trail, self._screen.width))
+        robot = self._robot()
+        self._say(*map_lines(self._focus.snapshot(robot), self._focus.trail(robot), self._screen.width))
 
     def _log(self, rest: str) -> None:
         for event in self._history.events(number_of(rest, "a number of events") if rest else 10):
-            robot = f"{event.robot} " if len(self._robots()) > 1 else ""
+            robot = f"{event.robot} " if len(self._focus.robots) > 1 else ""
             self._say(f"{event.stamp_s:8.2f} s  {robot}{event.source}: {event.message}")
 
     def _travel(self, rest: str, direction: int) -> None:
-        span = span_of(rest)
-        tick, _ = self._snapshot()
-        if span.seconds:
-            found = self._history.at_time(tick.stamp_s + direction * span.seconds)
-        else:
-            found = self._history.at(tick.index + direction * span.ticks)
-        assert found is not None  # the snapshot is one of them
-        newest, _ = self._newest()
-        self._past = None if found.index >= newest.index else found.index
-        if self._past is None:
-            self._say("this is the present")
-        else:
-            ago_s = newest.stamp_s - found.stamp_s
-            self._say(f"looking back {ago_s:.1f} s; now leads to the present")
+        ago_s = self._focus.travel(span_of(rest), direction)
+        is_present = self._focus.is_present
+        self._say(
+            "this is the present" if is_present else f"looking back {ago_s:.1f} s; now leads to the present"
+        )
         self._where("")
 
     def _now(self, _: str) -> None:
-        self._past = None
-        self._say(*state_lines(self._session.state(), len(self._robots())))
+        self._focus.return_to_present()
+        self._say(*state_lines(self._session.state(), len(self._focus.robots)))
 
     def _choose_robot(self, rest: str) -> None:
-        names = self._robots()
-        if rest and rest not in names:
-            raise DebugError(f'there is no robot "{rest}"; {did_you_mean(rest, names, "robots")}')
-        self._robot = rest or self._robot
-        for name in names:
-            self._say(f"{'> ' if name == self._shown_robot() else '  '}{name}")
+        if rest:
+            self._focus.choose(rest)
+        for name in self._focus.robots:
+            self._say(f"{'> ' if name == self._robot() else '  '}{name}")
+
+    def _robot(self) -> str:
+        return self._focus.robot(self._session.state().robot)
 
     def _paused_at(self) -> str:
         """Path of the node the run is paused at, if that is what is looked at."""
         state = self._session.state()
-        return state.path if self._past is None and state.robot == self._shown_robot() else ""
-
-    def _robots(self) -> tuple[str, ...]:
-        return tuple(self._history.run.trees) if self._history.run else ()
-
-    def _shown_robot(self) -> str:
-        return self._robot or self._session.state().robot or next(iter(self._robots()), "")
-
-    def _infos(self) -> tuple[NodeInfo, ...]:
-        return self._run_info().trees[self._shown_robot()]
-
-    def _run_info(self) -> RunInfo:
-        if self._history.run is None:
-            raise DebugError("the run has not begun yet")
-        return self._history.run
-
-    def _newest(self) -> tuple[TickSnapshot, RobotSnapshot]:
-        return self._of_robot(self._history.at(10**12))
-
-    def _snapshot(self) -> tuple[TickSnapshot, RobotSnapshot]:
-        """The tick that is looked at: an earlier one, or the last that was shown to observers."""
-        return self._newest() if self._past is None else self._of_robot(self._history.at(self._past))
-
-    def _of_robot(self, tick: TickSnapshot | None) -> tuple[TickSnapshot, RobotSnapshot]:
-        if tick is None:
-            raise DebugError("no tick has passed yet; step makes one")
-        name = self._shown_robot()
-        return tick, next(robot for robot in tick.robots if robot.robot == name)
+        return state.path if self._focus.is_present and state.robot == self._robot() else ""
 
     def _view(self) -> View:
         """Tree and blackboard: as they were, or as they are in the middle of a tick."""
-        if self._past is None and not self._session.state().over:
-            return self._ask(Look(self._shown_robot()))
-        _, robot = self._snapshot()
-        return View(robot.robot, robot.nodes, robot.blackboard)
+        if self._focus.is_present and not self._session.state().over:
+            return self._ask(Look(self._robot()))
+        return self._focus.view(self._robot())
 
     # --- talking to the session and the person -----------------------------------------------------------
 
