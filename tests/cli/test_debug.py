@@ -223,6 +223,9 @@ class Terminal:
     def type(self, text: str) -> None:
         os.write(self._own, text.encode())
 
+    def hang_up(self) -> None:
+        os.close(self._own)
+
 
 def _take_terminal(terminal: int) -> None:
     import fcntl
@@ -252,5 +255,24 @@ def test_ctrl_c_pauses_and_only_the_next_ones_stop_the_robot(folder):
     terminal.type("\x03")
     terminal.expect("stopping: the robots brake")
     terminal.expect("stopped by hand")
+    assert terminal.process.wait(60) == 130
+    assert json.loads((folder / "out" / "result.json").read_text())["outcome"] == "stopped"
+
+
+def test_a_lost_connection_stops_the_robot_and_saves_the_results(folder):
+    terminal = Terminal("debug", "mission.yaml", "--terminal", "--out", "out", "--set", "first=59 s")
+    terminal.expect("debug> ")
+    terminal.type("c\n")
+    terminal.expect("running; Ctrl-C pauses")
+    terminal.hang_up()
+    terminal.process.wait(60)
+    assert json.loads((folder / "out" / "result.json").read_text())["outcome"] == "stopped"
+
+
+def test_sigterm_stops_a_paused_run_and_saves_its_results(folder):
+    terminal = Terminal("debug", "mission.yaml", "--terminal", "--out", "out")
+    terminal.expect("debug> ")
+    terminal.process.terminate()
+    terminal.expect("stopped by hand (SIGTERM)")
     assert terminal.process.wait(60) == 130
     assert json.loads((folder / "out" / "result.json").read_text())["outcome"] == "stopped"

@@ -112,7 +112,12 @@ class Console:
         try:
             self._wait()
             while not self._has_left:
-                self._read_and_do()
+                try:
+                    self._read_and_do()
+                except Terminated:
+                    raise
+                except KeyboardInterrupt:  # whatever was being done or typed
+                    self._interrupted()
         except Terminated:
             pass
         finally:
@@ -125,11 +130,6 @@ class Console:
             line = self._reader.read(PROMPT)
         except EOFError:
             self._quit("")
-            return
-        except Terminated:
-            raise
-        except KeyboardInterrupt:
-            self._interrupted_at_prompt()
             return
         self._interrupts = 0
         self.do(line)
@@ -147,13 +147,6 @@ class Console:
             self._do[find_verb(word).name](rest.strip())
         except DebugError as refusal:
             self._say(Text(str(refusal), "yellow"))
-
-    def _interrupted_at_prompt(self) -> None:
-        self._interrupts += 1
-        if self._interrupts > 1 or self._session.state().over:
-            self._quit("")
-        else:
-            self._say("", "Ctrl-C once more, or quit, stops the robots and saves the results")
 
     # --- the run -----------------------------------------------------------------------------------------
 
@@ -183,20 +176,24 @@ class Console:
             except Terminated:
                 raise
             except KeyboardInterrupt:
-                self._interrupt()
+                self._interrupted()
         self._interrupts = 0
         if self._session.state().over and not self._focus.has_begun:
             self._has_left = True  # it never began; the command tells why
         elif not self._has_left:
             self._say(*state_lines(self._session.state(), len(self._focus.robots)))
 
-    def _interrupt(self) -> None:
+    def _interrupted(self) -> None:
+        """Ctrl-C: pause; the second one in a row stops the robots."""
         self._interrupts += 1
-        if self._interrupts > 1:
+        state = self._session.state()
+        if self._interrupts > 1 or state.over:
             self._quit("")
-        else:
-            self._say("", "pausing; Ctrl-C once more stops the robots and saves the results")
+            return
+        if not state.paused:
             self._session.submit(Pause())
+        what = "" if state.paused else "pausing; "
+        self._say("", f"{what}Ctrl-C once more stops the robots and saves the results")
 
     def _pause(self, _: str) -> None:
         state = self._session.state()
