@@ -1,0 +1,151 @@
+"""``explore-bt debug``."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from explore_bt.cli.driving import (
+    GETTING_READY,
+    OutOption,
+    SeedOption,
+    SinkOption,
+    VerboseOption,
+    drive,
+    exit_code,
+    make_sinks,
+    show_result,
+)
+from explore_bt.cli.guard import guarded
+from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
+from explore_bt.cli.places import new_run_folder
+from explore_bt.cli.run_log import run_log
+from explore_bt.errors import UserError
+
+if TYPE_CHECKING:
+    from explore_bt.debug import DebugSession
+    from explore_bt.mission import Mission
+    from explore_bt.plugin import Registry
+    from explore_bt.runtime import StopFlag
+    from explore_bt.types import Result
+
+__all__ = ["debug"]
+
+
+@guarded
+def debug(
+    mission: MissionArgument,
+    set_: SetOption = None,
+    seed: SeedOption = 0,
+    out: OutOption = None,
+    terminal: Annotated[
+        bool, typer.Option("--terminal", help="Commands in the terminal; also over ssh, or from a pipe.")
+    ] = False,
+    sink: SinkOption = None,
+    verbose: VerboseOption = False,
+) -> None:
+    """Run a mission under a debugger: step, break, look back.
+
+    It stands still before the first tick; type help. Ctrl-C pauses, a second one stops the robot
+    safely. Results and exit codes are those of explore-bt run.
+    """
+    if not terminal:
+        raise UserError("explore-bt debug has no page yet; add --terminal")
+    checked, registry = load_checked(mission, set_)
+    folder = new_run_folder(out, checked.path.stem)
+    typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
+    with run_log(folder / "run.log", verbose=verbose):
+        result = _in_terminal(checked, registry, folder, seed, set_ or (), sink or ())
+    show_result(result, folder)
+    raise typer.Exit(exit_code(result.outcome))
+
+
+def new_session(mission: Mission, registry: Registry, settings: Sequence[str]) -> DebugSession:
+    """A session that stands still before the first tick and can change parameters."""
+    from explore_bt.debug import DebugSession, Params
+    from explore_bt.mission import load_mission
+
+    def load(again: Sequence[str]) -> Mission:
+        return load_mission(mission.path, registry, again)
+
+    return DebugSession(Params(mission, load, settings), paused=True)
+
+
+def _in_terminal(
+    mission: Mission,
+    registry: Registry,
+    folder: Path,
+    seed: int,
+    settings: Sequence[str],
+    more_sinks: Sequence[str],
+) -> Result:
+    from rich.console import Console as Screen
+
+    from explore_bt.debug import History
+    from explore_bt.debug.terminal import Console, LineReader
+    from explore_bt.runtime import StopFlag
+
+    session, history, stop = new_session(mission, registry, settings), History(), StopFlag()
+    sinks = [*make_sinks(registry, more_sinks), history]
+    ended: Future[Result] = Future()
+
+    def run() -> None:
+        try:
+            ended.set_result(drive(mission, registry, folder, seed, sinks, stop, session))
+        except BaseException as fault:  # it is raised again where the command can tell it
+            ended.set_exception(fault)
+
+    screen = Screen(highlight=False)
+    console = Console(session, history, LineReader(lambda line: screen.print(line, markup=False)), screen)
+    threading.Thread(target=run, name="the run", daemon=True).start()
+    with _ended_by_signal(stop):
+        try:
+            console.run()
+        finally:  # however the console ended: no robot drives on without it
+            stop.raise_flag("stopped by hand (debugger)")
+            result = _result(ended, stop)
+        return result
+
+
+def _result(ended: Future[Result], stop: StopFlag) -> Result:
+    """What the run ended with; who interrupts the waiting wants it to stop."""
+    while True:
+        try:
+            return ended.result()
+        except KeyboardInterrupt:
+            stop.raise_flag("stopped by hand (Ctrl-C)")
+            _tell(b"\nstill stopping; Ctrl-\\ ends the program at once\n")
+
+
+@contextmanager
+def _ended_by_signal(stop: StopFlag) -> Iterator[None]:
+    """While inside, SIGTERM and a lost terminal stop the run safely and end the reading of commands."""
+    from explore_bt.debug.terminal import Terminated
+
+    def on_signal(number: int, _frame: FrameType | None) -> None:
+        _tell(b"\nstopping: the robot brakes, then the results are saved\n")
+        if not stop.is_raised:  # else the reading has ended already
+            stop.raise_flag(f"stopped by hand ({signal.Signals(number).name})")
+            raise Terminated
+
+    before = {number: signal.signal(number, on_signal) for number in (signal.SIGTERM, signal.SIGHUP)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _tell(words: bytes) -> None:
+    """``os.write``: print is not safe in a handler; and the terminal may be gone."""
+    with suppress(OSError):
+        os.write(2, words)
