@@ -59,8 +59,8 @@ def test_trees_whose_time_is_up_tick_as_in_behaviortree_cpp(registry: Registry, 
 def ordered(log: Log) -> tuple[Log, Log]:
     """The ticks in their order, and what each leaf lived through.
 
-    Their timers halt between the ticks, ours when it is the node's turn: halts of different leaves may come in
-    another order.
+    Their timers halt between the ticks, ours when it is the node's turn: halts of different leaves may come
+    in another order.
     """
     return [event for event in log if event[1] != "halt"], sorted(log, key=lambda event: event[0])
 
