@@ -12,16 +12,15 @@ from explore_bt.mission.btcpp.attributes import attribute_text
 from explore_bt.mission.btcpp.models import node_models
 from explore_bt.mission.btcpp.vocabulary import (
     BUILTIN_TAGS,
-    CONTROL_TAGS,
-    DECORATOR_TAGS,
     ENTRY_HOLDS,
+    LIVE_TAGS,
     MODIFIER,
     OWN_NAME,
 )
 from explore_bt.mission.nodes import Condition, NodeSpec
 from explore_bt.tree import Key, Leaf
 
-__all__ = ["tree_xml"]
+__all__ = ["control_attributes", "milliseconds", "port_attributes", "tree_xml"]
 
 _UNPRINTABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -57,7 +56,7 @@ def _remarks(root: NodeSpec) -> Iterator[str]:
     if any(isinstance(node.modifiers.condition, Condition) for node in nodes):
         yield f"{ENTRY_HOLDS} has no twin there: register a condition that succeeds if its entry is written"
         yield "and is neither None, false, zero nor empty."
-    if any(_milliseconds(node) != _exact_milliseconds(node) for node in nodes):
+    if any(milliseconds(node) != _exact_milliseconds(node) for node in nodes):
         yield "Timeout knows whole milliseconds from 1 on; shorter times were rounded."
     keys = {bound.name for node in nodes for bound in node.bindings.values() if isinstance(bound, Key)}
     if any(key.startswith("_") for key in keys):
@@ -68,7 +67,8 @@ def _exact_milliseconds(node: NodeSpec) -> float:
     return (node.modifiers.timeout_s or 0.0) * 1000.0
 
 
-def _milliseconds(node: NodeSpec) -> int:
+def milliseconds(node: NodeSpec) -> int:
+    """The time limit as ``Timeout`` takes it: whole milliseconds, 1 at least; 0 without one."""
     exact = _exact_milliseconds(node)
     return max(1, round(exact)) if exact else 0
 
@@ -112,7 +112,7 @@ class _Writer:
         """A node with its modifiers around it."""
         element, modifiers = self._bare(node, default_name), node.modifiers
         if modifiers.timeout_s is not None:
-            element = _around("Timeout", element, msec=str(_milliseconds(node)))
+            element = _around("Timeout", element, msec=str(milliseconds(node)))
         if modifiers.retry is not None:
             element = _around("RetryUntilSuccessful", element, num_attempts=str(modifiers.retry + 1))
         if modifiers.on_failure is not None:
@@ -140,8 +140,7 @@ class _Writer:
             element.set(OWN_NAME if node.type == "subtree" else "name", node.name)
         if node.doc:
             element.set("_description", node.doc)
-        for port, bound in node.bindings.items():
-            element.set(port, _port_text(node, port, bound))
+        element.attrib.update(port_attributes(node))
         return element
 
 
@@ -157,18 +156,30 @@ def _around(tag: str, *children: Element, **attributes: str) -> Element:
     return element
 
 
-def _control(node: NodeSpec) -> Element:
+def control_attributes(node: NodeSpec) -> dict[str, str]:
+    """What a control node is set to, in BehaviorTree.CPP's words."""
+    settings = node.settings
     if node.type == "parallel":
-        success = "-1" if node.settings["success"] == "all" else str(node.settings["success"])
-        return Element("Parallel", success_count=success, failure_count=str(node.settings["failure"]))
+        success = "-1" if settings["success"] == "all" else str(settings["success"])
+        return {"success_count": success, "failure_count": str(settings["failure"])}
     if node.type == "repeat":
-        times = node.settings["times"]
-        return (
-            Element("KeepRunningUntilFailure")
-            if times == "forever"
-            else Element("Repeat", num_cycles=str(times))
-        )
-    return Element({**CONTROL_TAGS, **DECORATOR_TAGS}[node.type])
+        return {"num_cycles": "-1" if settings["times"] == "forever" else str(settings["times"])}
+    return {"ID": str(settings["tree"])} if node.type == "subtree" else {}
+
+
+def port_attributes(node: NodeSpec) -> dict[str, str]:
+    """A leaf's ports as far as the mission binds them.
+
+    Raises:
+        UserError: a port whose name or value no attribute can have.
+    """
+    return {port: _port_text(node, port, bound) for port, bound in node.bindings.items()}
+
+
+def _control(node: NodeSpec) -> Element:
+    if node.type == "repeat" and node.settings["times"] == "forever":
+        return Element("KeepRunningUntilFailure")  # unlike Repeat, it ends the tick after each round
+    return Element(LIVE_TAGS[node.type], control_attributes(node))
 
 
 def _port_text(node: NodeSpec, port: str, bound: object) -> str:
