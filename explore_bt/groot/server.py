@@ -39,12 +39,12 @@ from explore_bt.groot.protocol import (
 from explore_bt.groot.tree_watch import TreeWatch
 from explore_bt.recording import to_json
 
-__all__ = ["GrootServer"]
+__all__ = ["SILENT_CLIENT_S", "GrootServer"]
 
 _log = logging.getLogger(__name__)
 
 _LOOK_UP_MS = 50
-_SILENT_CLIENT_S = 5.0
+SILENT_CLIENT_S = 5.0
 """As in BehaviorTree.CPP: who has asked nothing for so long is gone, and its breakpoints hold nobody."""
 _LAST_ANSWER_S = 3.0
 _BREATH_S = 0.001
@@ -63,7 +63,7 @@ class GrootServer:
         session: asked for the middle of a tick while the run is paused.
         robot: the robot's name.
         identity: 16 bytes that tell this run from others.
-        silent_client_s: see above; for tests.
+        silent_client_s: after so long without a request hooks hold nobody any more.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class GrootServer:
         session: DebugSession,
         robot: str,
         identity: bytes,
-        silent_client_s: float = _SILENT_CLIENT_S,
+        silent_client_s: float,
     ) -> None:
         self._ends = ends
         self._tree = tree

@@ -9,7 +9,7 @@ from explore_bt.debug import DebugSession
 from explore_bt.errors import UserError
 from explore_bt.groot.ends import Ends
 from explore_bt.groot.hooks import Hooks
-from explore_bt.groot.server import GrootServer
+from explore_bt.groot.server import SILENT_CLIENT_S, GrootServer
 from explore_bt.groot.tree_watch import TreeWatch
 from explore_bt.interfaces import PluginOptions, RunInfo, Sink, TickSnapshot
 from explore_bt.mission import Mission
@@ -27,18 +27,25 @@ class GrootSink(Sink):
         session: hooks are carried out by it.
         host: loopback, unless somebody asked for more: the protocol knows no token.
         port: of the first robot.
+        silent_client_s: after so long without a request hooks hold nobody any more.
     """
 
     name = "groot"
 
     def __init__(
-        self, mission: Mission, session: DebugSession, host: str = "127.0.0.1", port: int = 1667
+        self,
+        mission: Mission,
+        session: DebugSession,
+        host: str = "127.0.0.1",
+        port: int = 1667,
+        silent_client_s: float = SILENT_CLIENT_S,
     ) -> None:
         super().__init__(PluginOptions())
         self._specs = {robot.name: robot.tree for robot in mission.robots}
         self._session = session
         self._host = host
         self._port = port
+        self._silent_client_s = silent_client_s
         self._trees: dict[str, TreeWatch] = {}
         self._servers: list[GrootServer] = []
         self._ends: dict[str, Ends] = {}
@@ -75,7 +82,15 @@ class GrootSink(Sink):
                 f"{run.mission_sha256} {run.seed} {run.folder} {robot}".encode()
             ).digest()
             server = GrootServer(
-                self._ends[robot], tree, xml, tuple(known), hooks, self._session, robot, identity[:16]
+                self._ends[robot],
+                tree,
+                xml,
+                tuple(known),
+                hooks,
+                self._session,
+                robot,
+                identity[:16],
+                self._silent_client_s,
             )
             server.start()
             self._trees[robot] = tree
