@@ -41,9 +41,12 @@ class Draft:
 
     def value(self) -> Value:
         """As it would stand in a mission: a leaf's bare name where that is all."""
-        if not self.beside and isinstance(self.type.value, Scalar) and self.type.value.data is None:
-            return Scalar(self.type.key, self.type.key, True, self.type.place)
-        entries = {**self.beside, "": self.type}
+        type_ = self.type
+        if isinstance(type_.value, Scalar) and type_.value.data is None:
+            if not self.beside:
+                return Scalar(type_.key, type_.key, True, type_.place)
+            type_ = Entry(type_.key, type_.place, Entries((), type_.place))
+        entries = {**self.beside, "": type_}
         return Entries(tuple(entries[key] for key in _WRITTEN if key in entries), self.type.place)
 
 

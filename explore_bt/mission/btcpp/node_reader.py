@@ -250,6 +250,8 @@ class NodeReader:
             message = f'there is no tree "{block}"' if block else "<SubTree> has no ID"
             self._faults.add(place, message, did_you_mean(block, self._trees, "trees"))
             return None
+        if element.children:
+            self._faults.add(element.children[0].place, "nothing can stand in a <SubTree>", "move it behind")
         if element.get("_autoremap") != "true" and "_fullpath" not in element.attributes:
             message = f"{block} would have a blackboard of its own; subtrees here share one"
             self._faults.add(element.place, message, 'write _autoremap="true"')
