@@ -38,9 +38,10 @@ def convert(
     ] = None,
     set_: SetOption = None,
 ) -> None:
-    """Turn a tree into BehaviorTree.CPP XML, or such XML into a tree.
+    """Turn a tree into BehaviorTree.CPP XML and back.
 
-    Groot2 draws the XML. Both tick the same: modifiers become decorators and compositions, and come back as modifiers.
+    Groot2 draws the XML. Both tick the same: modifiers become decorators and compositions, and come back
+    as modifiers.
     What is not quite the same is said in words, in the file and on stderr.
     """
     is_xml = source.lower().endswith(".xml")

@@ -111,4 +111,4 @@ def test_plugins_beside_a_mission_are_known_to_its_trees(tmp_path: Path) -> None
     xml = elsewhere / "nod.xml"
     xml.write_text('<root BTCPP_format="4"><BehaviorTree ID="m"><nod/></BehaviorTree></root>')
     assert "there is no node nod" in convert(xml).stderr
-    assert convert(xml, "--mission", beside / "mine.yaml").stdout.endswith("m: nod\n")
+    assert convert(xml, "--mission", beside / "mine.yaml").stdout.endswith("trees: {m: nod}\n")
