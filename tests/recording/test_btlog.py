@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import behaviortreepy as bt
 import pytest
 
+from explore_bt.cli.btlog import write_btlogs
 from explore_bt.errors import UserError
 from explore_bt.interfaces import PluginOptions, RunInfo, Sink, TickSnapshot
 from explore_bt.mission import load_mission
@@ -141,3 +142,12 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
         stop=StopFlag(),
     )
     return Run(read_recording(folder / "run/recording.mcap"), ticks.seen)
+
+
+def test_a_file_is_written_whole_and_named_as_groot2_wants_it(run: Run, tmp_path: Path) -> None:
+    assert write_btlogs(run.recording, tmp_path / "run.btlog") == [tmp_path / "run.btlog"]
+    assert read_log((tmp_path / "run.btlog").read_bytes()).transitions
+    with pytest.raises(UserError, match=r"does not end with \.btlog, as Groot2 wants it; write .*log\.btlog"):
+        write_btlogs(run.recording, tmp_path / "log.bin")
+    with pytest.raises(UserError, match="there is no folder"):
+        write_btlogs(run.recording, tmp_path / "nowhere/run.btlog")
