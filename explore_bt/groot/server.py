@@ -48,7 +48,7 @@ SILENT_CLIENT_S = 5.0
 """As in BehaviorTree.CPP: who has asked nothing for so long is gone, and its breakpoints hold nobody."""
 _LAST_ANSWER_S = 3.0
 _BREATH_S = 0.001
-"""Rest after each answer, so that a flood of requests leaves the interpreter to the tick thread."""
+"""Rest after each message, so that a flood leaves the interpreter to the tick thread."""
 
 
 class GrootServer:
@@ -125,15 +125,16 @@ class GrootServer:
         self._ends.close()
 
     def _serve(self) -> None:
-        requests = self._ends.requests
         while not self._ended.is_set():
             try:
                 self._tell()
                 self._watch_client()
-                if requests.poll(_LOOK_UP_MS):
+                asked = self._ends.next_request(_LOOK_UP_MS)
+                if asked is not None:
+                    client, frames = asked
                     self._hear()
-                    requests.send_multipart(self._answer(requests.recv_multipart()))
-                    time.sleep(_BREATH_S)
+                    self._ends.answer(client, self._answer(frames))
+                time.sleep(_BREATH_S)
             except zmq.ContextTerminated:
                 return
             except zmq.ZMQError as error:  # of one exchange; the next client is served all the same
@@ -164,7 +165,7 @@ class GrootServer:
             place = None if uid is None else (state.tick, state.path, state.moment, state.stamp_s)
             if uid is not None and place != self._told:
                 self._notices += 1
-                self._ends.notices.send_multipart(notice(self._notices, uid))
+                self._ends.tell_all(notice(self._notices, uid))
             self._told = place
 
     def _answer(self, frames: list[bytes]) -> list[bytes]:

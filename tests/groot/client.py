@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import socket
 import struct
@@ -11,14 +12,16 @@ import zmq
 PATIENCE_MS = 20_000
 
 
-def free_port() -> int:
-    """The first of two neighbouring ports that nobody has."""
+def free_port(count: int = 2) -> int:
+    """The first of ``count`` neighbouring ports that nobody has."""
     while True:
-        with socket.socket() as one, socket.socket() as other:
-            one.bind(("127.0.0.1", 0))
-            port: int = one.getsockname()[1]
+        with contextlib.ExitStack() as held:
+            first = held.enter_context(socket.socket())
+            first.bind(("127.0.0.1", 0))
+            port: int = first.getsockname()[1]
             try:
-                other.bind(("127.0.0.1", port + 1))
+                for number in range(port + 1, port + count):
+                    held.enter_context(socket.socket()).bind(("127.0.0.1", number))
             except (OSError, OverflowError):
                 continue
             return port

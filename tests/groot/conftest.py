@@ -26,7 +26,7 @@ class Watched:
     def __init__(self, path: Path, registry: Registry, out: Path, **options: Any) -> None:
         mission = load_mission(path, registry)
         self.session, self.stop = DebugSession(paused=True), StopFlag()
-        self.port = free_port()
+        self.port = free_port(4)
         self.sink = GrootSink(mission, self.session, port=self.port, **options)
         self.sink.bind()
         self.result: Future[Result] = Future()

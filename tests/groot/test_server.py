@@ -19,6 +19,7 @@ from explore_bt.debug import Force, Resume
 from explore_bt.errors import UserError
 from explore_bt.groot.ends import Ends
 from explore_bt.types import Outcome
+from tests.groot.box import MISSION
 from tests.groot.client import Client, RefusedError, free_port
 
 IDLE, RUNNING, SUCCESS, FAILURE = 0, 1, 2, 3
@@ -277,12 +278,24 @@ def test_a_port_that_is_taken_is_named_before_anything_runs() -> None:
         ends.close()
 
 
-def test_further_robots_are_two_ports_on(watched) -> None:
-    run = watched()
-    assert list(run.sink.ports.values()) == [run.port]
-    several = type("Mission", (), {"robots": [type("Robot", (), {"name": n, "tree": None}) for n in "abc"]})
-    sink = type(run.sink)(several, run.session, port=1667)
-    assert sink.ports == {"a": 1667, "b": 1669, "c": 1671}
+def test_each_robot_has_its_own_pair_of_ports_and_hooks(watched) -> None:
+    stack = MISSION.split("  robot:\n", 1)[1].split("limits:", 1)[0]
+    both = MISSION.replace("  robot:\n", f"  ann:\n{stack}  bob:\n", 1)
+    run = watched(both)
+    assert run.sink.ports == {"ann": run.port, "bob": run.port + 2}
+    clients = [Client(port) for port in run.sink.ports.values()]
+    try:
+        place = uids(clients[1])["choose_place"]
+        clients[1].ask("I", hook(place))
+        state = run.go_on()
+        assert (state.robot, state.path) == ("bob", "main/choose_place")
+        assert [json.loads(client.ask("D")) for client in clients] == [[], [hook(place)]]
+        assert clients[0].identities.isdisjoint(clients[1].identities)
+        clients[1].ask("A")
+        assert run.result.result(60).outcome is Outcome.EXPLORED
+    finally:
+        for client in clients:
+            client.close()
 
 
 def test_status_is_that_of_the_moment_while_the_run_is_held(watched, connect) -> None:
