@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from explore_bt.interfaces import NodeInfo
 from explore_bt.mission.btcpp.vocabulary import ENTRY_HOLDS, LIVE_TAGS
-from explore_bt.mission.btcpp.write import control_attributes, milliseconds, port_attributes
+from explore_bt.mission.btcpp.write import UNPRINTABLE, control_attributes, milliseconds, port_attributes
 from explore_bt.mission.nodes import Condition, NodeSpec
 
 __all__ = ["live_attributes", "live_tree_xml", "uid_of"]
@@ -52,7 +52,7 @@ def live_tree_xml(
             SubElement(model, "inout_port", name=port)
     SubElement(models, "Condition", ID=ENTRY_HOLDS)
     indent(document, "  ")
-    return tostring(document, encoding="unicode")
+    return UNPRINTABLE.sub("\ufffd", tostring(document, encoding="unicode"))
 
 
 def live_attributes(root: NodeSpec) -> dict[str, dict[str, str]]:

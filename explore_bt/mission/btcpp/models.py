@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import types
 import typing
 from collections.abc import Iterable
@@ -36,7 +37,8 @@ def node_models(leaves: Iterable[type[Leaf]]) -> Element:
 def _port(model: Element, direction: str, name: str, port: Input[Any] | Output[Any]) -> None:
     element = SubElement(model, direction, name=name, type=_type(port.type))
     if port.default is not REQUIRED:
-        element.set("default", attribute_text(port.default))
+        with contextlib.suppress(ValueError):  # one that no attribute can hold is not told
+            element.set("default", attribute_text(port.default))
     dimension = dimension_of(port.type)
     element.text = f"{port.doc} ({dimension.si})" if dimension else port.doc
 

@@ -20,9 +20,11 @@ from explore_bt.mission.btcpp.vocabulary import (
 from explore_bt.mission.nodes import Condition, NodeSpec
 from explore_bt.tree import Key, Leaf
 
-__all__ = ["control_attributes", "milliseconds", "port_attributes", "tree_xml"]
+__all__ = ["UNPRINTABLE", "control_attributes", "milliseconds", "port_attributes", "tree_xml"]
 
-_UNPRINTABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_ROUNDING = 1e-6
+UNPRINTABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""A character that no XML may hold."""
 
 
 def tree_xml(root: NodeSpec, leaves: Iterable[type[Leaf]] = ()) -> str:
@@ -41,7 +43,7 @@ def tree_xml(root: NodeSpec, leaves: Iterable[type[Leaf]] = ()) -> str:
     """
     used = {node.leaf for node in root.walk() if node.leaf is not None} | set(leaves)
     text = _Writer(root, used).text()
-    found = _UNPRINTABLE.search(text)
+    found = UNPRINTABLE.search(text)
     if found:
         raise UserError(
             f"the tree {root.name} holds the character {found[0]!r}, which XML cannot; take it out"
@@ -56,8 +58,8 @@ def _remarks(root: NodeSpec) -> Iterator[str]:
     if any(isinstance(node.modifiers.condition, Condition) for node in nodes):
         yield f"{ENTRY_HOLDS} has no twin there: register a condition that succeeds if its entry is written"
         yield "and is neither None, false, zero nor empty."
-    if any(milliseconds(node) != _exact_milliseconds(node) for node in nodes):
-        yield "Timeout knows whole milliseconds from 1 on; shorter times were rounded."
+    if any(abs(milliseconds(node) - _exact_milliseconds(node)) > _ROUNDING for node in nodes):
+        yield "Timeout knows whole milliseconds, 1 at least; times in between were rounded."
     keys = {bound.name for node in nodes for bound in node.bindings.values() if isinstance(bound, Key)}
     if any(key.startswith("_") for key in keys):
         yield "Entries that begin with _ are private to each subtree there; here subtrees share them."

@@ -19,6 +19,7 @@ class Look(Leaf):
     label: Input[str] = Input(str, default="", doc="shown")
     weights: Input[tuple[float, ...]] = Input(tuple[float, ...], default=(1.0, 2.0), doc="of the ways")
     patience: Input[float | None] = Input(Duration | None, default=None, doc="how long")
+    nothing: Input[tuple[float, ...]] = Input(tuple[float, ...], default=(), doc="no attribute can say it")
     goal: Output[Waypoint] = Output(Waypoint, default=Key("goal"), doc="where to")
 
     def update(self) -> Status:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from explore_bt.errors import MissionError
+from explore_bt.errors import MissionError, UserError
 from explore_bt.mission import load_tree
 from explore_bt.mission.btcpp import read_tree_xml, tree_xml
 from explore_bt.plugin import Registry
@@ -223,3 +223,17 @@ def test_the_long_form_and_negative_thresholds_are_read(tmp_path, leaves) -> Non
     lines = ["parallel:", "success: 1", "failure: 2", "children:", "- name: a", "home: {}", "- home"]
     assert [line.strip() for line in text.split("\n")] == lines
     assert remarks == ()
+
+
+def test_what_xml_cannot_say_is_refused_or_left_out(tmp_path, leaves) -> None:
+    path = tmp_path / "trees.yaml"
+    path.write_text("trees: {main: {look: {nothing: []}}}")
+    with pytest.raises(
+        UserError, match=r"trees.yaml:1:\d+: nothing: the list \[\] cannot be written as an XML"
+    ):
+        tree_xml(load_tree(path, ["main"], leaves))
+    path.write_text("trees: {main: {timeout: 1.5 ms, look: {}}}")
+    text = tree_xml(load_tree(path, ["main"], leaves))
+    assert 'msec="2"' in text
+    assert "were rounded" in text
+    assert '<input_port name="nothing" type="tuple">' in text
