@@ -58,7 +58,7 @@ def debug(
     groot_host: GrootHostOption = "127.0.0.1",
     verbose: VerboseOption = False,
 ) -> None:
-    """Drive a mission under a debugger: pause, step, break, force, look back.
+    """Run a mission under a debugger: step, break, look back.
 
     It stands still before the first tick; type help. Ctrl-C pauses, a second one stops the robot
     safely. Results and exit codes are those of explore-bt run.
