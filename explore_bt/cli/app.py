@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from explore_bt.cli.check import check
+from explore_bt.cli.convert import convert
 from explore_bt.cli.debug import debug
 from explore_bt.cli.new_plugin import new_plugin
 from explore_bt.cli.plugins import plugins
@@ -65,6 +66,7 @@ app.command(epilog="Example: explore-bt run 01_apartment --set stride=1.2 --seed
 app.command(epilog="Example: explore-bt debug 01_apartment --terminal")(debug)
 app.command(epilog="Example: explore-bt check missions/mine.yaml --set clearance='0.30 m'")(check)
 app.command(epilog="Example: explore-bt show 01_apartment --dot | dot -Tsvg -o tree.svg")(show)
+app.command(epilog="Example: explore-bt convert 01_apartment --xml --out apartment.xml")(convert)
 app.command(epilog="Example: explore-bt slam intel.clf.bz2 --out runs/intel --odometry")(slam)
 app.command(epilog="Example: explore-bt world --kind apartment --seed 3 --out flat.yaml")(world)
 app.command(epilog="Example: explore-bt schema --out missions/schema.json")(schema)

@@ -25,6 +25,7 @@ from explore_bt.cli.driving import (
     make_sinks,
     show_result,
 )
+from explore_bt.cli.groot import GrootHostOption, GrootOption, GrootPortOption, groot_sinks
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
 from explore_bt.cli.places import new_run_folder
@@ -33,6 +34,7 @@ from explore_bt.errors import UserError
 
 if TYPE_CHECKING:
     from explore_bt.debug import DebugSession
+    from explore_bt.interfaces import Sink
     from explore_bt.mission import Mission
     from explore_bt.plugin import Registry
     from explore_bt.runtime import StopFlag
@@ -51,6 +53,9 @@ def debug(
         bool, typer.Option("--terminal", help="Commands in the terminal; also over ssh, or from a pipe.")
     ] = False,
     sink: SinkOption = None,
+    groot: GrootOption = False,
+    groot_port: GrootPortOption = 1667,
+    groot_host: GrootHostOption = "127.0.0.1",
     verbose: VerboseOption = False,
 ) -> None:
     """Run a mission under a debugger: step, break, look back.
@@ -63,8 +68,13 @@ def debug(
     checked, registry = load_checked(mission, set_)
     folder = new_run_folder(out, checked.path.stem)
     typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
+    session = new_session(checked, registry, set_ or ())
+    sinks = [
+        *make_sinks(registry, sink or ()),
+        *groot_sinks(groot, checked, session, groot_host, groot_port),
+    ]
     with run_log(folder / "run.log", verbose=verbose):
-        result = _in_terminal(checked, registry, folder, seed, set_ or (), sink or ())
+        result = _in_terminal(checked, registry, folder, seed, session, sinks)
     show_result(result, folder)
     raise typer.Exit(exit_code(result.outcome))
 
@@ -85,8 +95,8 @@ def _in_terminal(
     registry: Registry,
     folder: Path,
     seed: int,
-    settings: Sequence[str],
-    more_sinks: Sequence[str],
+    session: DebugSession,
+    more_sinks: Sequence[Sink],
 ) -> Result:
     from rich.console import Console as Screen
 
@@ -94,8 +104,8 @@ def _in_terminal(
     from explore_bt.debug.terminal import Console, LineReader
     from explore_bt.runtime import StopFlag
 
-    session, history, stop = new_session(mission, registry, settings), History(), StopFlag()
-    sinks = [*make_sinks(registry, more_sinks), history]
+    history, stop = History(), StopFlag()
+    sinks = [*more_sinks, history]
     ended: Future[Result] = Future()
 
     def run() -> None:

@@ -18,6 +18,7 @@ from explore_bt.cli.driving import (
     make_sinks,
     show_result,
 )
+from explore_bt.cli.groot import GrootHostOption, GrootOption, GrootPortOption, groot_sinks
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
 from explore_bt.cli.places import new_run_folder
@@ -37,6 +38,9 @@ def run(
         bool, typer.Option("--headless", help="No live view, a line every ten seconds.")
     ] = False,
     sink: SinkOption = None,
+    groot: GrootOption = False,
+    groot_port: GrootPortOption = 1667,
+    groot_host: GrootHostOption = "127.0.0.1",
     verbose: VerboseOption = False,
 ) -> None:
     """Run a mission; map, recording and report land in a folder.
@@ -48,11 +52,17 @@ def run(
     folder = new_run_folder(out, checked.path.stem)
     live = "terminal" if not headless and sys.stdout.isatty() else "progress"
     sinks = make_sinks(registry, [live, *(sink or ())])
+    session = None
+    if groot:
+        from explore_bt.debug import DebugSession
+
+        session = DebugSession()
+        sinks += groot_sinks(groot, checked, session, groot_host, groot_port)
     typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
     from explore_bt.runtime import StopFlag
 
     stop = StopFlag()
     with run_log(folder / "run.log", verbose=verbose), stopping_by_signal(stop):
-        result = drive(checked, registry, folder, seed, sinks, stop)
+        result = drive(checked, registry, folder, seed, sinks, stop, session)
     show_result(result, folder)
     raise typer.Exit(exit_code(result.outcome))

@@ -12,7 +12,7 @@ from explore_bt.mission.reading import check_keys, expect_entries, expect_items,
 from explore_bt.mission.source import Place, Source
 from explore_bt.mission.words import did_you_mean
 
-__all__ = ["FORMAT", "INCLUDE_KEYS", "MISSION_KEYS", "MissionText", "read_files"]
+__all__ = ["FORMAT", "INCLUDE_KEYS", "MISSION_KEYS", "MissionText", "read_files", "read_text"]
 
 FORMAT = "explore-bt/1"
 MISSION_KEYS = (
@@ -58,7 +58,7 @@ def read_files(path: Path, faults: Faults, known: tuple[str, ...] = MISSION_KEYS
         known: the keys it may hold; ``INCLUDE_KEYS`` for a file of trees.
     """
     head = Source(str(path), "", path.parent, has_lines=False)
-    text = _read_text(path, head.place(), "the mission", faults)
+    text = read_text(path, head.place(), "the mission", faults)
     if text is None:
         return None
     source = Source(str(path), text, path.parent)
@@ -79,7 +79,8 @@ def _mapping(source: Source, faults: Faults) -> Entries | None:
     return None
 
 
-def _read_text(path: Path, place: Place, shown: str, faults: Faults) -> str | None:
+def read_text(path: Path, place: Place, shown: str, faults: Faults) -> str | None:
+    """A small text; None if it cannot be read (the fault is noted at ``place``)."""
     try:
         with path.open("rb") as file:
             data = file.read(_LARGEST_BYTES + 1)
@@ -88,7 +89,7 @@ def _read_text(path: Path, place: Place, shown: str, faults: Faults) -> str | No
         faults.add(place, f"{shown} cannot be read: {reason.lower()}")
         return None
     if len(data) > _LARGEST_BYTES:
-        faults.add(place, f"{shown} is larger than 1 MB", "a mission is a small text")
+        faults.add(place, f"{shown} is larger than 1 MB", "missions and trees are small texts")
         return None
     try:
         return data.decode("utf-8-sig")
@@ -164,7 +165,7 @@ class _Collector:
         if len(self._mission.included) >= _MOST_FILES:
             self._faults.add(value.place, f"more than {_MOST_FILES} included files")
             return False
-        text = _read_text(real, value.place, value.data, self._faults)
+        text = read_text(real, value.place, value.data, self._faults)
         if text is None:
             return False
         shown = os.path.join(os.path.dirname(value.place.source.name), value.data)

@@ -1,5 +1,6 @@
 """The recording of a run: one MCAP file that outlives a crash and opens in Foxglove as it is."""
 
+from explore_bt.recording.btlog import STATUS_BYTES, btlog, transition_record
 from explore_bt.recording.foxglove import decode_grid
 from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions
 from explore_bt.recording.measurements_reader import decode_measurements
@@ -9,6 +10,7 @@ from explore_bt.recording.values import to_json
 
 __all__ = [
     "SINKS",
+    "STATUS_BYTES",
     "TOPICS",
     "McapRecorder",
     "McapRecorderOptions",
@@ -16,10 +18,12 @@ __all__ = [
     "Recording",
     "RecordingError",
     "Topic",
+    "btlog",
     "decode_grid",
     "decode_measurements",
     "read_recording",
     "to_json",
+    "transition_record",
 ]
 
 SINKS = (McapRecorder,)

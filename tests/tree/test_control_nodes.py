@@ -139,6 +139,41 @@ def test_decorators_tick_as_their_table_says(make, script, rows) -> None:
     assert play(make(child), [child], len(rows)) == rows
 
 
+def test_between_two_attempts_a_reactive_node_asks_its_first_children_again() -> None:
+    children = scripted("SSF", "FFS")
+    root = ReactiveSequence("node", [children[0], Retry("again", children[1], 5)])
+    assert play(root, children, 1) == ["F SSF FF"]
+
+
+def test_between_two_rounds_a_parallel_node_ticks_its_others_again() -> None:
+    children = scripted("S", "R")
+    root = Parallel("node", [Repeat("three times", children[0], 3), children[1]])
+    assert play(root, children, 2) == ["R SSS RRR", "R . R"]
+
+
+def test_an_attempt_that_took_several_ticks_is_followed_by_the_next_at_once() -> None:
+    children = scripted("RFS", "R")
+    root = Parallel("node", [Retry("again", children[0], 1), children[1]])
+    assert play(root, children, 2) == ["R R R", "R FS R"]
+
+
+def test_a_tick_ends_where_two_retries_wake_each_other_for_ever() -> None:
+    children = scripted("F", "F", "S")
+    root = ReactiveFallback("node", [Retry("a", children[0], 2), Retry("b", children[1], 2), children[2]])
+    rows = play(root, children, 2)
+    assert [row[0] for row in rows] == ["R", "R"]
+    assert all(len(row) > 500 for row in rows)
+    root.stop(Status.INVALID)
+    assert all(node.status is Status.INVALID for node in root.iterate())
+
+
+def test_a_round_that_ended_leaves_no_wish_for_another_tick() -> None:
+    children = scripted("FS", "SSR")
+    first = Fallback("node", [Retry("again", children[0], 1), children[1]])
+    assert play(first, children, 1) == ["S FS ."]
+    assert play(first, children, 1) == ["S FS ."]
+
+
 def test_a_timeout_halts_its_child_and_fails_without_ticking_it() -> None:
     clock, child = ManualClock(), Scripted("R")
     root = Timeout("node", child, 1.0, clock.now_s)

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["ControlNode", "Decorator", "Work", "halt", "ticked"]
 
+_MOST_PASSES = 1000
+
 Work = Generator[Behaviour, None, Status]
 """One tick's work: yields every node it passes, returns the status."""
 
@@ -64,11 +66,16 @@ class ControlNode(Behaviour):
     A subclass says in ``work`` what one tick does; ``initialise`` is called before the first tick of a
     round. Statuses of the children stay visible until the next round begins.
 
+    A root whose tree was woken (see ``wake``) is ticked again within the same tick, as by BehaviorTree.CPP's
+    ``tickOnce``. Where that would never end, as with two endless loops side by side that wake each other, the
+    tick ends after a thousand passes and goes on in the next one; BehaviorTree.CPP hangs there.
+
     Attributes:
         probe: asked before and after every tick of a child; None: nobody is.
     """
 
     probe: Probe | None = None
+    _woken = False
 
     def __init__(self, name: str, children: Sequence[Behaviour]) -> None:
         super().__init__(name=name)
@@ -79,6 +86,14 @@ class ControlNode(Behaviour):
     def ticked(self, child: Behaviour) -> Work:
         """Tick ``child`` and return its status."""
         return ticked(child, self.probe)
+
+    def wake(self) -> None:
+        """Have the whole tree ticked again, from its root, as soon as this pass through it is over."""
+        root: Behaviour = self
+        while root.parent is not None:
+            root = root.parent
+        if isinstance(root, ControlNode):
+            root._woken = True
 
     @abstractmethod
     def work(self) -> Work:
@@ -91,11 +106,15 @@ class ControlNode(Behaviour):
                 halt(child)
             self.feedback_message = ""
             self.initialise()
-        status = yield from self.work()
-        if status is not Status.RUNNING:
-            self.stop(status)
-        self.status = status
-        yield self
+        for _ in range(_MOST_PASSES):
+            self._woken = False
+            status = yield from self.work()
+            if status is not Status.RUNNING:
+                self.stop(status)
+            self.status = status
+            yield self
+            if status is not Status.RUNNING or not self._woken:
+                break
 
     def update(self) -> Status:
         """Unused: ``work`` takes its place."""

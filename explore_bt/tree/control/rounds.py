@@ -13,9 +13,11 @@ __all__ = ["Repeat", "Retry"]
 class Repeat(Decorator):
     """Runs its child until it has succeeded ``times`` times; fails when the child fails.
 
-    With a number, the next round begins within the same tick, as in BehaviorTree.CPP. With None it goes
-    on for ever and returns ``RUNNING`` after each round: a child that succeeds at once is ticked once per
-    tick, so the tick always ends. ``times`` may be changed between ticks.
+    With a number, the next round begins within the same tick, as in BehaviorTree.CPP: after a round that took
+    only one tick the tree is woken, so that what stands before and beside this node is asked again first.
+    With None it goes on for ever and returns ``RUNNING`` after each round, as ``KeepRunningUntilFailure``:
+    a child that succeeds at once is ticked once per tick, so the tick always ends. ``times`` may be changed
+    between ticks.
     """
 
     def __init__(self, name: str, child: Behaviour, times: int | None) -> None:
@@ -29,6 +31,7 @@ class Repeat(Decorator):
     def work(self) -> Work:
         """Tick the child, round after round."""
         while self.times is None or self._done < self.times:
+            began = self.child.status is not Status.RUNNING
             status = yield from self.ticked(self.child)
             if status is not Status.SUCCESS:
                 return status
@@ -37,14 +40,17 @@ class Repeat(Decorator):
             self.feedback_message = f"{self._done}{total} rounds done"
             if self.times is None:
                 return Status.RUNNING
+            if began and self._done < self.times:
+                self.wake()
+                return Status.RUNNING
         return Status.SUCCESS
 
 
 class Retry(Decorator):
     """Runs a failing child again, up to ``retries`` more times; succeeds when the child does.
 
-    The next attempt begins within the same tick. ``retry: 2`` is BehaviorTree.CPP's
-    ``RetryUntilSuccessful num_attempts=3``. ``retries`` may be changed between ticks.
+    The next attempt begins within the same tick, after the tree was woken as by ``Repeat``. ``retry: 2`` is
+    BehaviorTree.CPP's ``RetryUntilSuccessful num_attempts=3``. ``retries`` may be changed between ticks.
     """
 
     def __init__(self, name: str, child: Behaviour, retries: int) -> None:
@@ -58,9 +64,13 @@ class Retry(Decorator):
     def work(self) -> Work:
         """Tick the child, attempt after attempt."""
         while self._failed <= self.retries:
+            began = self.child.status is not Status.RUNNING
             status = yield from self.ticked(self.child)
             if status is not Status.FAILURE:
                 return status
             self._failed += 1
             self.feedback_message = f"{self._failed} of {self.retries + 1} attempts failed"
+            if began and self._failed <= self.retries:
+                self.wake()
+                return Status.RUNNING
         return Status.FAILURE
