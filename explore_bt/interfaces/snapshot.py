@@ -46,7 +46,11 @@ class NodeState:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunInfo:
-    """All that is known when a run begins."""
+    """All that is known when a run begins.
+
+    Attributes:
+        sources: file as ``NodeInfo.place`` names it -> its text.
+    """
 
     mission: str
     mission_text: str
@@ -56,6 +60,7 @@ class RunInfo:
     folder: FilePath
     trees: Mapping[str, tuple[NodeInfo, ...]]
     footprint_radius_m: Mapping[str, float]
+    sources: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,24 +1,39 @@
 """The recording of a run: one MCAP file that outlives a crash and opens in Foxglove as it is."""
 
 from explore_bt.recording.foxglove import decode_grid
-from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions
+from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions, result_message, run_message
 from explore_bt.recording.measurements_reader import decode_measurements
+from explore_bt.recording.message_log import LoggedMessage, MessageLog
 from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
+from explore_bt.recording.robot_track import Periods, RobotTrack
+from explore_bt.recording.run_state import NodeNow, RobotState, followed_topics, state_at
+from explore_bt.recording.timeline import Timeline
 from explore_bt.recording.topics import TOPICS, Topic
 from explore_bt.recording.values import to_json
 
 __all__ = [
     "SINKS",
     "TOPICS",
+    "LoggedMessage",
     "McapRecorder",
     "McapRecorderOptions",
+    "MessageLog",
+    "NodeNow",
+    "Periods",
     "RecordedMessage",
     "Recording",
     "RecordingError",
+    "RobotState",
+    "RobotTrack",
+    "Timeline",
     "Topic",
     "decode_grid",
     "decode_measurements",
+    "followed_topics",
     "read_recording",
+    "result_message",
+    "run_message",
+    "state_at",
     "to_json",
 ]
 

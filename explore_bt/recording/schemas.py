@@ -92,6 +92,7 @@ _SCHEMAS: Mapping[str, _Schema] = {
         seed=_INTEGER,
         version=_TEXT,
         footprint_radius_m=_ANY,
+        sources={"type": "object", "additionalProperties": _TEXT},
         trees={"type": "object", "additionalProperties": _array(_NODE)},
     ),
     "explore_bt.Tree": _object(timestamp=_TIME, tick=_INTEGER, key_frame=_FLAG, nodes=_array(_NODE_STATE)),
