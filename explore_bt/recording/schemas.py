@@ -53,7 +53,13 @@ _CLOUD = _object(
 )
 _NODE_STATE = _object(id=_INTEGER, status=_TEXT, message=_TEXT)
 _NODE = _object(
-    id=_INTEGER, path=_TEXT, name=_TEXT, type=_TEXT, parent={"type": ["integer", "null"]}, place=_TEXT
+    id=_INTEGER,
+    path=_TEXT,
+    name=_TEXT,
+    type=_TEXT,
+    parent={"type": ["integer", "null"]},
+    place=_TEXT,
+    ports=_array(_object(name=_TEXT, bound=_TEXT, is_output=_FLAG)),
 )
 
 _SCHEMAS: Mapping[str, _Schema] = {

@@ -1,0 +1,1 @@
+"""Looking into a run: pause, step, breakpoints, time travel."""

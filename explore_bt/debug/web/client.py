@@ -1,0 +1,110 @@
+"""One page at the other end of a socket: asks and is answered, and hears how far the run is."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import Callable
+
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
+
+from explore_bt.debug.web.desk import Desk
+from explore_bt.debug.web.requests import read_request
+
+__all__ = ["Client", "Share"]
+
+NEWS_PERIOD_S = 0.05
+PATIENCE_S = 20.0
+_FAULTS_BEFORE_PARTING = 50
+
+
+class Share:
+    """Keeps the answering of all pages together below a share of one core, however much they ask.
+
+    Answering takes time from the thread that ticks the trees. After work that took ``d`` seconds nothing
+    is answered for ``d / share - d``.
+    """
+
+    def __init__(self, share: float) -> None:
+        self._rest = 1.0 / share - 1.0
+        self._turn = asyncio.Lock()
+        self._free_s = 0.0
+
+    async def spend(self, work: Callable[[], str]) -> str:
+        """Do a piece of work when its turn has come."""
+        async with self._turn:
+            await asyncio.sleep(max(0.0, self._free_s - time.monotonic()))
+            began_s = time.monotonic()
+            try:
+                return work()
+            finally:
+                now_s = time.monotonic()
+                self._free_s = now_s + self._rest * (now_s - began_s)
+
+
+class Client:
+    """Serves one socket until it closes.
+
+    Nothing is queued for a client: it is sent an answer when it asks, and the newest news. While it does
+    not read, its own task waits, and after 20 s it is parted with; nobody else notices.
+    """
+
+    def __init__(self, socket: WebSocket, desk: Desk, share: Share) -> None:
+        self._socket = socket
+        self._desk = desk
+        self._share = share
+        self._sending = asyncio.Lock()
+        self._faults = 0
+
+    async def serve(self) -> None:
+        """Until either side has gone."""
+        tasks = [asyncio.ensure_future(each) for each in (self._answer(), self._tell_news())]
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+        if self._socket.application_state is WebSocketState.CONNECTED:
+            await self._close()
+
+    async def _answer(self) -> None:
+        while self._faults < _FAULTS_BEFORE_PARTING:
+            try:
+                message = await self._socket.receive_text()
+            except (WebSocketDisconnect, KeyError):  # KeyError: bytes instead of text
+                return
+            await self._send(await self._answer_to(message))
+
+    async def _answer_to(self, message: str) -> str:
+        id_ = "null"
+        try:
+            request = read_request(message)
+            id_ = str(request.id)
+            members = await self._share.spend(lambda: self._desk.answer(request))
+        except ValueError as fault:
+            self._faults += id_ == "null"
+            words = str(fault) if id_ != "null" else "not a request of this page"
+            return f'{{"id":{id_},"error":{json.dumps(words)}}}'
+        return f'{{"id":{id_},{members}}}'
+
+    async def _tell_news(self) -> None:
+        told = ""
+        while True:
+            news = self._desk.news()
+            if news != told:
+                told = news
+                await self._send(f'{{"news":{news}}}')
+            await asyncio.sleep(NEWS_PERIOD_S)
+
+    async def _send(self, text: str) -> None:
+        async with self._sending, asyncio.timeout(PATIENCE_S):
+            await self._socket.send_text(text)
+
+    async def _close(self) -> None:
+        try:
+            async with asyncio.timeout(1.0):
+                await self._socket.close(1008)
+        except (TimeoutError, RuntimeError, OSError, WebSocketDisconnect):
+            pass  # it has gone already
