@@ -8,6 +8,7 @@
     │   ├── WorldError            a world, map or start pose
     │   ├── LogError              a recorded log that cannot be read
     │   │   └── LogCutOff         one that ends in the middle; what came before it was sound
+    │   ├── DebugError            a command to the debugger that cannot be done
     │   └── PluginError           a plugin that is unknown, broken, doubled or wrongly configured
     ├── PlanningFailure           a planner's typed "no": a tree can branch on its class
     │   ├── NoPath · StartBlocked · GoalBlocked · GoalUnknown · Cancelled
@@ -25,6 +26,7 @@ from typing import ClassVar
 __all__ = [
     "Cancelled",
     "ComponentFailure",
+    "DebugError",
     "ExploreError",
     "Fault",
     "GoalBlocked",
@@ -94,6 +96,10 @@ class LogError(UserError):
 
 class LogCutOff(LogError):
     """A log that ends in the middle of a message; all before it has been read and is sound."""
+
+
+class DebugError(UserError):
+    """A command to the debugger that cannot be done; the run goes on as if it had not been given."""
 
 
 class PluginError(UserError):

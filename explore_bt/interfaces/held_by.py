@@ -14,3 +14,4 @@ class HeldBy(enum.StrEnum):
     OBSTACLE = "an obstacle"
     SOMEONE = "someone who moves"
     SENSES = "senses that fail"
+    DEBUGGER = "the debugger"

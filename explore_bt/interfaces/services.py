@@ -119,7 +119,7 @@ class RobotServices(Protocol):
         """Driven since the start, metres."""
 
     def now_s(self) -> float:
-        """Mission time, seconds."""
+        """Mission time, seconds; it stands still while a debugger holds the tree, stamps do not."""
 
     def budgets(self) -> tuple[Budget, ...]:
         """What of time, distance and battery the mission allows still; none where it sets no limit."""

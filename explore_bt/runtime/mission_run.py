@@ -12,6 +12,7 @@ from explore_bt.files import write_whole
 from explore_bt.interfaces import RobotProduct, RunInfo, Sink
 from explore_bt.mission import Mission
 from explore_bt.plugin import Registry
+from explore_bt.runtime.attendant import Attendant
 from explore_bt.runtime.exports import export
 from explore_bt.runtime.observers import Observers
 from explore_bt.runtime.robot import Robot
@@ -34,6 +35,7 @@ def run_mission(
     seed: int,
     sinks: Sequence[Sink],
     stop: StopFlag,
+    attendant: Attendant | None = None,
 ) -> Result:
     """Run a mission to its end and leave its results in ``out``.
 
@@ -44,6 +46,7 @@ def run_mission(
         seed: of every random draw in the run.
         sinks: observers, in the order they are called.
         stop: raised by anyone who wants the robots to stop.
+        attendant: stands beside the tick loop, a debugger for example.
 
     Returns:
         What ``result.json`` says.
@@ -53,13 +56,14 @@ def run_mission(
     """
     began_s = time.perf_counter()  # wall time is a figure of the report, never an input of the run
     observers = Observers(sinks)
+    attendant = attendant or Attendant()
     robots = [Robot(spec, mission, seed, stop, observers.event) for spec in mission.robots]
     try:
         for robot in robots:
             robot.setup()
         _make_folder(out)
         observers.open(_run_info(mission, robots, seed, out))
-        runner = Runner(mission, robots, observers, stop)
+        runner = Runner(mission, robots, observers, stop, attendant)
         try:
             runner.run()
         finally:  # nothing mapped is lost, even if the run breaks down inside
@@ -69,8 +73,11 @@ def run_mission(
             write_whole(out / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
         return result
     finally:
-        for robot in robots:
-            robot.close()
+        try:
+            for robot in robots:
+                robot.close()
+        finally:
+            attendant.end()
 
 
 def _make_folder(out: Path) -> None:

@@ -110,10 +110,16 @@ class Pilot:
             self._blocked_since_s = now_s
         self._send(following, now_s)
 
-    def brake(self, reason: str, now_s: float, dt_s: float) -> None:
+    def pause(self, reason: str, now_s: float, dt_s: float) -> None:
+        """One control period at rest that the controller knows nothing of: the path is gone on with later."""
+        if self._blocked_since_s is not None:
+            self._blocked_since_s += now_s - self._now_s
+        self.brake(reason, now_s, dt_s, HeldBy.DEBUGGER)
+
+    def brake(self, reason: str, now_s: float, dt_s: float, held_by: HeldBy = HeldBy.SENSES) -> None:
         """One control period of a controlled stop, without asking the controller."""
         self._now_s = now_s
-        self.gate_reason, self.held_by = reason, HeldBy.SENSES
+        self.gate_reason, self.held_by = reason, held_by
         self._send(self._gate.brake(self.motion, dt_s), now_s)
 
     def _send(self, following: MotionState, now_s: float) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,7 @@ from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tight_places import TightPlaces
-from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
+from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, status_word, tick
 from explore_bt.types import (
     Battery,
     Budget,
@@ -95,6 +96,7 @@ class Robot:
         self._logged: set[tuple[str, str]] = set()
         self._health_news = HealthNews()
         self._gate_reason = ""
+        self._held_s = 0.0
         self._people = People()
         self.moving: tuple[MovingObstacle, ...] = ()
 
@@ -154,8 +156,8 @@ class Robot:
         return self.scores.score().distance_m
 
     def now_s(self) -> float:
-        """Mission time, seconds."""
-        return self.driver.clock.now_s()
+        """Mission time as the tree is to know it, seconds: while the robot is held it stands still."""
+        return self._clock_s() - self._held_s
 
     def budgets(self) -> tuple[Budget, ...]:
         """What the mission's limits leave to spend."""
@@ -205,7 +207,7 @@ class Robot:
             raise failure from error
 
     def _plan(self, goal: Pose2, via: Sequence[tuple[float, float]], radius_m: float) -> Path:
-        here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
+        here = self.pilot.predict(self.estimate(), self._clock_s()).T_map_base
         grid = self.view().grid
         self._tell_change(grid)
         return plan_through(
@@ -261,8 +263,13 @@ class Robot:
             self._note_failure(f"controller {self._controller.name}", error)
             self.pilot.brake(f"controller {self._controller.name} failed: {error!r}", now_s, dt_s)
         self._watch_gate()
-        pose = self.pilot.predict(self.estimate(), now_s).T_map_base
-        self.scores.control_step(pose, self.pilot.motion, now_s, dt_s)
+        self._keep_score(now_s, dt_s)
+
+    def hold(self, reason: str, now_s: float, dt_s: float) -> None:
+        """One control period at rest, in place of ``act``; the tree's time stands still for as long."""
+        self.pilot.pause(reason, now_s, dt_s)
+        self._held_s += dt_s
+        self._keep_score(now_s, dt_s)
 
     def watch_ticks(self, probe: Probe) -> None:
         """Have ``probe`` asked before and after every tick of every node of the tree."""
@@ -306,10 +313,7 @@ class Robot:
             path=self.pilot.path,
             motion=self.pilot.motion,
             gate_reason=self.pilot.gate_reason,
-            nodes=tuple(
-                NodeState(_status_word(node.status), node.feedback_message, ticks[id(node)])
-                for node in self.tree.nodes
-            ),
+            nodes=self.node_states(ticks),
             blackboard=dict(self.blackboard),
             score=self.scores.score(),
             true_pose=self.scores.true_pose,
@@ -317,11 +321,26 @@ class Robot:
             held_by=self.pilot.held_by,
         )
 
+    def node_states(self, ticks: Mapping[int, int] = MappingProxyType({})) -> tuple[NodeState, ...]:
+        """Every node of the tree as it is now, in the middle of a tick too; ``ticks`` by the nodes' ids."""
+        return tuple(
+            NodeState(status_word(node.status), node.feedback_message, ticks.get(id(node), 0))
+            for node in self.tree.nodes
+        )
+
     def tell(self, level: str, source: str, message: str) -> None:
         """Pass an event on to the observers."""
-        self._tell(Event(self.now_s(), self.name, level, source, message))
+        self._tell(Event(self._clock_s(), self.name, level, source, message))
 
     # --- inside -------------------------------------------------------------------------------------
+
+    def _clock_s(self) -> float:
+        """Mission time as measurements are stamped."""
+        return self.driver.clock.now_s()
+
+    def _keep_score(self, now_s: float, dt_s: float) -> None:
+        pose = self.pilot.predict(self.estimate(), now_s).T_map_base
+        self.scores.control_step(pose, self.pilot.motion, now_s, dt_s)
 
     def _take(self, measurement: Measurement) -> None:
         if isinstance(measurement, Scan2D):
@@ -380,7 +399,7 @@ class Robot:
 
     def _watch_health(self) -> None:
         estimate = self.estimate()
-        news = self._health_news.of(estimate, self.now_s())
+        news = self._health_news.of(estimate, self._clock_s())
         if news:
             self.tell("info" if estimate.health is Health.OK else "warning", "slam", news)
 
@@ -388,7 +407,3 @@ class Robot:
         if self.pilot.gate_reason and not self._gate_reason and self._scan is not None:
             self.tell("warning", "safety gate", self.pilot.gate_reason)
         self._gate_reason = self.pilot.gate_reason
-
-
-def _status_word(status: Status) -> str:
-    return "idle" if status is Status.INVALID else str(status.value).lower()

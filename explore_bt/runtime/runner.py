@@ -9,6 +9,7 @@ from py_trees.behaviour import Behaviour
 
 from explore_bt.interfaces import Event, TickSnapshot
 from explore_bt.mission import Mission
+from explore_bt.runtime.attendant import Attendant
 from explore_bt.runtime.observers import Observers
 from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
@@ -31,59 +32,101 @@ class _Phase(enum.Enum):
 
 
 class Runner:
-    """Drives all robots of a mission in lock-step until the trees, the user or a budget end it."""
+    """Drives all robots of a mission in lock-step until the trees, the user or a budget end it.
+
+    Attributes:
+        now_s: mission time, on the robots' clocks.
+        tick: index of the coming ``TickSnapshot``.
+    """
 
     def __init__(
-        self, mission: Mission, robots: Sequence[Robot], observers: Observers, stop: StopFlag
+        self,
+        mission: Mission,
+        robots: Sequence[Robot],
+        observers: Observers,
+        stop: StopFlag,
+        attendant: Attendant,
     ) -> None:
         self._mission = mission
-        self._robots = robots
+        self.robots = robots
         self._observers = observers
-        self._stop = stop
+        self.stop = stop
+        self._attendant = attendant
         self._dt_s = 1.0 / mission.control_rate_hz
         self._steps_per_tick = round(mission.control_rate_hz / mission.tree_rate_hz)
         self._phase = _Phase.WAKING
         self._ended: dict[str, Status] = {}
         self._rest_until_s = 0.0
-        self._tick = 0
+        self._step = 0
+        self._held_s = 0.0
+        self.tick = 0
         self.now_s = 0.0
         self.outcome = Outcome.FAILED
         self.reason = "the run broke down inside explore-bt"
 
     def run(self) -> None:
         """Until everything stands still; ``outcome`` and ``reason`` then tell why."""
-        step = 0
+        self._attendant.begin(self)
         while self._phase is not _Phase.OVER:
-            step += 1
-            self._advance(step * self._dt_s)
-            for robot in self._robots:
-                robot.sense()
-            if step % self._steps_per_tick == 0:
+            self._advance()
+            is_tick = self._is_tick
+            if is_tick:
+                self._attendant.on_period()
                 self._decide()
-            for robot in self._robots:
+            for robot in self.robots:
                 robot.act(self.now_s, self._dt_s)
-            if step % self._steps_per_tick == 0:
+            if is_tick:
                 self._show()
 
-    def _advance(self, time_s: float) -> None:
-        for robot in self._robots:
-            robot.driver.clock.wait_until(time_s)
-        self.now_s = time_s
+    def hold(self, reason: str) -> None:
+        """One control period at rest, in the middle of a tick or before one: for an attendant in real time.
+
+        Everything goes on but the trees and what they are told the time is: sensors, SLAM, safety gate,
+        observers. The robots brake to rest and stand, and will go on where they were.
+        """
+        for robot in self.robots:
+            robot.hold(reason, self.now_s, self._dt_s)
+        self._advance()
+        self._held_s += self._dt_s
+        if self._is_tick:
+            self._show()
+
+    def tell(self, event: Event) -> None:
+        """Pass an event on to the observers."""
+        self._observers.event(event)
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether time stands still while nobody waits for it."""
+        return all(robot.driver.clock.is_simulated for robot in self.robots)
+
+    @property
+    def _is_tick(self) -> bool:
+        return self._step % self._steps_per_tick == 0
+
+    def _advance(self) -> None:
+        """Go on to the next control period."""
+        self._step += 1
+        self.now_s = self._step * self._dt_s
+        for robot in self.robots:
+            robot.driver.clock.wait_until(self.now_s)
+        for robot in self.robots:
+            robot.sense()
 
     def _decide(self) -> None:
         if self._phase is _Phase.WAKING:
             self._wake()
         elif self._phase is _Phase.DECIDING:
             self._tick_trees()
-        elif all(robot.pilot.is_at_rest for robot in self._robots) or self.now_s > self._rest_until_s:
+        elif all(robot.pilot.is_at_rest for robot in self.robots) or self.now_s > self._rest_until_s:
             self._phase = _Phase.OVER
 
     def _wake(self) -> None:
-        blind = [robot for robot in self._robots if _is_blind(robot.scan())]
+        blind = [robot for robot in self.robots if _is_blind(robot.scan())]
         if not blind:
             self._phase = _Phase.DECIDING
-        elif self._stop.is_raised:
-            self._end(Outcome.STOPPED, self._stop.reason)
+        elif self.stop.is_raised:
+            self._end(Outcome.STOPPED, self.stop.reason)
         elif self.now_s > FIRST_SCAN_TIMEOUT_S:
             robot = blind[0]
             found = "no scan" if robot.scan() is None else "only scans without a valid beam"
@@ -91,30 +134,31 @@ class Runner:
             self._end(Outcome.FAILED, f"robot {robot.name}: {complaint}; check the lidar")
 
     def _tick_trees(self) -> None:
-        if self._stop.is_raised:
-            self._end(Outcome.STOPPED, self._stop.reason)
+        self._attendant.before_tick()
+        if self.stop.is_raised:
+            self._end(Outcome.STOPPED, self.stop.reason)
             return
         if spent := self._budget_spent():
             self._end(Outcome.BUDGET, spent)
             return
-        for robot in self._robots:
+        for robot in self.robots:
             if robot.name not in self._ended:  # a tree that is ticked again would begin anew
                 self._tick_tree(robot)
-        if len(self._ended) < len(self._robots):
+        if len(self._ended) < len(self.robots):
             return
-        for robot in self._robots:
+        for robot in self.robots:
             if self._ended[robot.name] is not Status.SUCCESS:
                 self._end(Outcome.FAILED, _last_words(robot, Status.FAILURE))
                 return
         short = [
             str(robot.blackboard.get(OVER_BUDGET_KEY))
-            for robot in self._robots
+            for robot in self.robots
             if OVER_BUDGET_KEY in robot.blackboard
         ]
         if short:
             self._end(Outcome.BUDGET, "; ".join(short))
         else:
-            self._end(Outcome.EXPLORED, _last_words(self._robots[0], Status.SUCCESS))
+            self._end(Outcome.EXPLORED, _last_words(self.robots[0], Status.SUCCESS))
 
     def _tick_tree(self, robot: Robot) -> None:
         status = robot.decide()
@@ -124,9 +168,9 @@ class Runner:
 
     def _budget_spent(self) -> str:
         limits = self._mission.limits
-        if limits.time_s is not None and self.now_s >= limits.time_s:
+        if limits.time_s is not None and self.now_s - self._held_s >= limits.time_s:
             return f"the time budget of {limits.time_s:.0f} s is spent"
-        for robot in self._robots:
+        for robot in self.robots:
             if limits.distance_m is not None and robot.distance_m >= limits.distance_m:
                 return f"robot {robot.name}: the distance budget of {limits.distance_m:.0f} m is spent"
         return ""
@@ -136,16 +180,16 @@ class Runner:
         self._phase = _Phase.RESTING
         self._rest_until_s = self.now_s + REST_TIMEOUT_S
         self._observers.event(Event(self.now_s, "", "info", "mission", f"{outcome}: {reason}"))
-        for robot in self._robots:
+        for robot in self.robots:
             robot.rest()
 
     def _show(self) -> None:
         final = self._phase is _Phase.OVER
-        for robot in self._robots:
+        for robot in self.robots:
             robot.scores.map_step(robot.slam.grid(), self.now_s, final=final)
-        snapshots = tuple(robot.snapshot() for robot in self._robots)
-        self._observers.tick(TickSnapshot(self._tick, self.now_s, snapshots))
-        self._tick += 1
+        snapshots = tuple(robot.snapshot() for robot in self.robots)
+        self._observers.tick(TickSnapshot(self.tick, self.now_s, snapshots))
+        self.tick += 1
 
 
 def _is_blind(scan: Scan2D | None) -> bool:

@@ -23,6 +23,7 @@ from explore_bt.tree.control import (
 from explore_bt.tree.leaf import Leaf, Status
 from explore_bt.tree.ports import REQUIRED, Input, Key, Output, PortUnsetError
 from explore_bt.tree.probe import Probe, attach, detach, tick
+from explore_bt.tree.status_word import status_word
 
 __all__ = [
     "REQUIRED",
@@ -53,5 +54,6 @@ __all__ = [
     "attach",
     "detach",
     "halt",
+    "status_word",
     "tick",
 ]

@@ -54,8 +54,12 @@ class Leaf(py_trees.behaviour.Behaviour):
         super().__init__(name=name)
         self.robot = robot
         self.blackboard = blackboard
+        self.bind(bindings or {})
+
+    def bind(self, bindings: Mapping[str, object]) -> None:
+        """Bind the ports anew, between ticks; those that are not named get their defaults."""
         ports: dict[str, Input[Any] | Output[Any]] = {**self.inputs, **self.outputs}
-        self.bindings = {port: declared.default for port, declared in ports.items()} | dict(bindings or {})
+        self.bindings = {port: declared.default for port, declared in ports.items()} | dict(bindings)
         unknown = self.bindings.keys() - ports.keys()
         missing = [port for port, bound in self.bindings.items() if bound is REQUIRED]
         unwritable = [port for port in self.outputs if not isinstance(self.bindings[port], Key)]

@@ -15,12 +15,12 @@ class Repeat(Decorator):
 
     With a number, the next round begins within the same tick, as in BehaviorTree.CPP. With None it goes
     on for ever and returns ``RUNNING`` after each round: a child that succeeds at once is ticked once per
-    tick, so the tick always ends.
+    tick, so the tick always ends. ``times`` may be changed between ticks.
     """
 
     def __init__(self, name: str, child: Behaviour, times: int | None) -> None:
         super().__init__(name, child)
-        self._times = times
+        self.times = times
 
     def initialise(self) -> None:
         """No round is done."""
@@ -28,14 +28,14 @@ class Repeat(Decorator):
 
     def work(self) -> Work:
         """Tick the child, round after round."""
-        while self._times is None or self._done < self._times:
+        while self.times is None or self._done < self.times:
             status = yield from self.ticked(self.child)
             if status is not Status.SUCCESS:
                 return status
             self._done += 1
-            total = "" if self._times is None else f" of {self._times}"
+            total = "" if self.times is None else f" of {self.times}"
             self.feedback_message = f"{self._done}{total} rounds done"
-            if self._times is None:
+            if self.times is None:
                 return Status.RUNNING
         return Status.SUCCESS
 
@@ -44,12 +44,12 @@ class Retry(Decorator):
     """Runs a failing child again, up to ``retries`` more times; succeeds when the child does.
 
     The next attempt begins within the same tick. ``retry: 2`` is BehaviorTree.CPP's
-    ``RetryUntilSuccessful num_attempts=3``.
+    ``RetryUntilSuccessful num_attempts=3``. ``retries`` may be changed between ticks.
     """
 
     def __init__(self, name: str, child: Behaviour, retries: int) -> None:
         super().__init__(name, child)
-        self._retries = retries
+        self.retries = retries
 
     def initialise(self) -> None:
         """No attempt has failed."""
@@ -57,10 +57,10 @@ class Retry(Decorator):
 
     def work(self) -> Work:
         """Tick the child, attempt after attempt."""
-        while self._failed <= self._retries:
+        while self._failed <= self.retries:
             status = yield from self.ticked(self.child)
             if status is not Status.FAILURE:
                 return status
             self._failed += 1
-            self.feedback_message = f"{self._failed} of {self._retries + 1} attempts failed"
+            self.feedback_message = f"{self._failed} of {self.retries + 1} attempts failed"
         return Status.FAILURE

@@ -20,22 +20,22 @@ class Timeout(Decorator):
     Args:
         name: shown to people.
         child: what may take so long.
-        duration_s: seconds of mission time.
+        duration_s: seconds of mission time; may be changed between ticks, also while the child runs.
         now_s: the mission's clock; never the wall's, which goes on while a debugger holds the run.
     """
 
     def __init__(self, name: str, child: Behaviour, duration_s: float, now_s: Callable[[], float]) -> None:
         super().__init__(name, child)
-        self._duration_s = duration_s
+        self.duration_s = duration_s
         self._now_s = now_s
 
     def initialise(self) -> None:
         """The time begins."""
-        self._deadline_s = self._now_s() + self._duration_s
+        self._begun_s = self._now_s()
 
     def work(self) -> Work:
         """Tick the child while there is time."""
-        if self._now_s() >= self._deadline_s:
-            self.feedback_message = f"gave up after {self._duration_s:g} s"
+        if self._now_s() >= self._begun_s + self.duration_s:
+            self.feedback_message = f"gave up after {self.duration_s:g} s"
             return Status.FAILURE
         return (yield from self.ticked(self.child))

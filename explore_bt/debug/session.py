@@ -1,0 +1,298 @@
+"""A debugger's session with one run: the tree is touched in the tick thread alone."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from py_trees.behaviour import Behaviour
+
+from explore_bt.debug.breakpoint import Moment
+from explore_bt.debug.breakpoints import Breakpoints
+from explore_bt.debug.commands import (
+    AddBreakpoint,
+    Command,
+    EnableBreakpoint,
+    Evaluate,
+    Force,
+    Look,
+    Pause,
+    Quit,
+    Release,
+    RemoveBreakpoint,
+    Resume,
+    SetParam,
+    Step,
+    View,
+)
+from explore_bt.debug.expression import Expression
+from explore_bt.debug.forced_answers import ForcedAnswers
+from explore_bt.debug.herald import Listener
+from explore_bt.debug.params import Params
+from explore_bt.debug.places import Place, Places
+from explore_bt.debug.queue import CommandQueue
+from explore_bt.debug.sight import Sight
+from explore_bt.debug.state import DebugState
+from explore_bt.debug.stride import Stride
+from explore_bt.errors import DebugError
+from explore_bt.interfaces import Event
+from explore_bt.runtime import Attendant, Robot, Runner
+from explore_bt.tree import Probe, Status
+
+__all__ = ["DebugSession"]
+
+T = TypeVar("T")
+
+_COMMANDS_A_TICK = 64
+"""So many are answered while the run goes on; a flood waits its turn, not the robots."""
+_LOOK_UP_S = 0.1
+"""How often a paused session looks whether somebody has raised the stop flag."""
+_OVER = "the run is over"
+
+
+class DebugSession(Attendant):
+    """Pauses, steps, breaks, forces; thread-safe from outside by ``submit``, ``state`` and ``subscribe``.
+
+    Give it to ``run_mission`` as its attendant. While nothing is to be watched it costs two calls a node.
+    A run that is stopped by its stop flag is let go at once, whatever the debugger was about.
+
+    Args:
+        params: reads the mission again for ``SetParam``; without it no parameter can be changed.
+        paused: whether to stand still before the first tick.
+    """
+
+    def __init__(self, params: Params | None = None, *, paused: bool = False) -> None:
+        self._params = params or Params()
+        self._queue = CommandQueue()
+        self._listeners: dict[Listener[DebugState], None] = {}
+        self._listeners_lock = threading.Lock()
+        self._stride = Stride()
+        self._pausing = "before the first tick" if paused else ""
+        self._state = DebugState(params=self._params.states)
+        self._runner: Runner | None = None
+
+    # --- for clients, from any thread -------------------------------------------------------------------
+
+    def submit(self, command: Command[T]) -> Future[T]:
+        """Have a command done in the tick thread; its future gives the answer, or a ``DebugError``."""
+        return self._queue.submit(command)
+
+    def state(self) -> DebugState:
+        """The debugger as it is now."""
+        runner = self._runner
+        if runner is None:
+            return self._state
+        return replace(self._state, tick=runner.tick, stamp_s=runner.now_s)
+
+    def subscribe(self, callback: Callable[[DebugState], None]) -> Callable[[], None]:
+        """Have ``callback`` told of changes, in a thread of its own; returns what ends that.
+
+        It is told the present state first. While it is busy only the newest state is kept for it. Ticks
+        that pass are no change.
+        """
+        listener = Listener(callback)
+        with self._listeners_lock:
+            self._listeners[listener] = None
+            listener.tell(self._state)
+
+        def unsubscribe() -> None:
+            with self._listeners_lock:
+                self._listeners.pop(listener, None)
+            listener.close()
+
+        return unsubscribe
+
+    # --- for the runner, in the tick thread -------------------------------------------------------------
+
+    def begin(self, runner: Runner) -> None:
+        """Stand beside every node of every tree."""
+        self._places = Places(runner.robots)
+        self._breakpoints = Breakpoints(self._places, lambda: (runner.tick, runner.now_s))
+        self._forced = ForcedAnswers(self._places, self._note)
+        self._runner = runner
+        for robot in runner.robots:
+            robot.watch_ticks(_Beside(self))
+        self._show(why="running", is_simulated=runner.is_simulated)
+
+    def on_period(self) -> None:
+        """Answer what was asked meanwhile."""
+        if self._breakpoints.have_news:
+            self._show()
+        self._queue.serve(self._do, 0.0, _COMMANDS_A_TICK)
+
+    def before_tick(self) -> None:
+        """Pause here if that was asked for."""
+        if why := self._stride.next_tick():
+            self._pausing = why
+        if self._pausing:
+            self._stand_still(self._pausing)
+
+    def end(self) -> None:
+        """Let everybody know."""
+        runner = self._runner
+        why = f"{runner.outcome}: {runner.reason}" if runner else "it never began"
+        self._show(paused=False, over=True, why=why, robot="", path="", moment="", status="")
+        self._queue.close(_OVER)
+        with self._listeners_lock:
+            listeners, self._listeners = list(self._listeners), {}
+        for listener in listeners:
+            listener.close()
+
+    @property
+    def is_alert(self) -> bool:
+        """Whether nodes are to be looked at one by one."""
+        return bool(self._stride.watches_nodes or self._breakpoints or self._forced)
+
+    def before(self, node: Behaviour) -> Status | None:
+        """Before a node is ticked: stop at a breakpoint, then answer in its place if that is wanted."""
+        place = self._places.of(node)
+        if why := self._breakpoints.hit(place, Moment.BEFORE):
+            self._stand_still(why, place, Moment.BEFORE)
+        return self._forced.answer(place)
+
+    def after(self, node: Behaviour) -> None:
+        """After a node's tick: stop where a step ends, or at a breakpoint."""
+        place = self._places.of(node)
+        why = self._stride.next_node(place)
+        why = self._breakpoints.hit(place, Moment.AFTER) or why
+        if why:
+            self._stand_still(why, place, Moment.AFTER)
+
+    # --- standing still ---------------------------------------------------------------------------------
+
+    def _stand_still(self, why: str, place: Place | None = None, moment: Moment | None = None) -> None:
+        runner = self._attended()
+        self._stride.end()
+        self._pausing = why
+        self._show(
+            paused=True,
+            why=why,
+            robot=place.robot.name if place else "",
+            path=place.info.path if place else "",
+            moment=str(moment) if moment else "",
+            status=place.status if place else "",
+        )
+        begun_s = runner.now_s
+        if not runner.is_simulated:
+            self._note(f"the robots are held: {why}")
+        while self._pausing and not runner.stop.is_raised:
+            self._queue.serve(self._do, _LOOK_UP_S if runner.is_simulated else 0.0, _COMMANDS_A_TICK)
+            if self._pausing and not runner.is_simulated:
+                runner.hold(f"held by the debugger: {why}")
+        self._pausing = ""
+        if not runner.is_simulated:
+            self._note(f"the robots go on after {runner.now_s - begun_s:.1f} s")
+        self._show(paused=False, why=self._stride.why, robot="", path="", moment="", status="")
+
+    def _attended(self) -> Runner:
+        assert self._runner is not None  # commands are only done, and nodes only ticked, in a run
+        return self._runner
+
+    def _show(self, **changes: Any) -> None:
+        """Publish the state with these changes."""
+        runner = self._runner
+        if runner is not None:
+            changes |= {
+                "breakpoints": self._breakpoints.states(),
+                "forced": self._forced.states,
+                "params": self._params.states,
+                "tick": runner.tick,
+                "stamp_s": runner.now_s,
+            }
+        with self._listeners_lock:
+            self._state = replace(self._state, **changes)
+            for listener in self._listeners:
+                listener.tell(self._state)
+
+    def _note(self, message: str, robot: str = "") -> None:
+        runner = self._attended()
+        runner.tell(Event(runner.now_s, robot, "info", "debugger", message))
+
+    # --- commands ---------------------------------------------------------------------------------------
+
+    def _do(self, command: Command[Any]) -> object:
+        answer = self._answer(command)
+        if not isinstance(command, Look | Evaluate):
+            self._show()
+        return answer
+
+    def _answer(self, command: Command[Any]) -> object:
+        match command:
+            case Pause():
+                self._pause()
+            case Resume():
+                self._go_on(Stride())
+            case Step():
+                self._go_on(Stride.of(command, self._places))
+            case Quit():
+                self._attended().stop.raise_flag("stopped by hand (debugger)")
+            case AddBreakpoint():
+                return self._breakpoints.add(command.breakpoint)
+            case RemoveBreakpoint():
+                self._breakpoints.remove(command.number)
+            case EnableBreakpoint():
+                self._breakpoints.enable(command.number, command.enabled)
+            case Force():
+                return self._forced.force(command.path, command.robot, command.status, once=command.once)
+            case Release():
+                return self._forced.release(command.path, command.robot)
+            case SetParam():
+                return self._set_param(command)
+            case Evaluate():
+                return self._evaluate(command)
+            case Look():
+                return self._look(command)
+            case _:
+                raise DebugError(f"{type(command).__name__} is not a command of the debugger")
+        return None
+
+    def _pause(self) -> None:
+        if not self._state.paused:
+            self._pausing = "paused by hand"
+
+    def _go_on(self, stride: Stride) -> None:
+        self._stride, self._pausing = stride, ""
+        if not self._state.paused:
+            self._show(why=stride.why)
+
+    def _set_param(self, command: SetParam) -> str:
+        if not self._state.paused:
+            raise DebugError("a parameter can be changed while the run is paused; pause first")
+        changed = self._params.change(command.name, command.text, self._places)
+        self._note(changed)
+        return changed
+
+    def _evaluate(self, command: Evaluate) -> object:
+        runner, robot = self._attended(), self._robot(command.robot)
+        state = self._state
+        place = None
+        if state.path and state.robot == robot.name:
+            (place,) = (p for p in self._places if p.robot is robot and p.info.path == state.path)
+        expression = Expression(command.expression)
+        expression.check(robot)
+        return expression.value(Sight(robot, runner.tick, runner.now_s, place))
+
+    def _look(self, command: Look) -> View:
+        robot = self._robot(command.robot)
+        return View(robot.name, robot.node_states(), dict(robot.blackboard))
+
+    def _robot(self, name: str) -> Robot:
+        return self._places.robot(name or self._state.robot or next(iter(self._places.robots)))
+
+
+class _Beside(Probe):
+    """Asks the session only while it is alert."""
+
+    def __init__(self, session: DebugSession) -> None:
+        self._session = session
+
+    def before(self, node: Behaviour) -> Status | None:
+        return self._session.before(node) if self._session.is_alert else None
+
+    def after(self, node: Behaviour) -> Status | None:
+        if self._session.is_alert:
+            self._session.after(node)
+        return None
