@@ -38,7 +38,8 @@ class Desk:
 
     def news(self) -> str:
         """How far the run is, as JSON."""
-        return f'{{"end_s":{self._feed.end_ns / 1e9},"live":false}}'
+        ready = "true" if self._feed.run_text else "false"
+        return f'{{"end_s":{self._feed.end_ns / 1e9},"ready":{ready},"live":false}}'
 
     def _run(self) -> str:
         log, damage = self._feed.log, json.dumps(self._feed.damage)
