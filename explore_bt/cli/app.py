@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from explore_bt.cli.check import check
+from explore_bt.cli.debug import debug
 from explore_bt.cli.new_plugin import new_plugin
 from explore_bt.cli.plugins import plugins
 from explore_bt.cli.replay import replay
@@ -62,6 +63,7 @@ def start(
 
 
 app.command(epilog="Example: explore-bt run 01_apartment --set stride=1.2 --seed 3 --headless")(run)
+app.command(epilog="Example: explore-bt debug 01_apartment --terminal")(debug)
 app.command(epilog="Example: explore-bt replay runs/first --open")(replay)
 app.command(epilog="Example: explore-bt check missions/mine.yaml --set clearance='0.30 m'")(check)
 app.command(epilog="Example: explore-bt show 01_apartment --dot | dot -Tsvg -o tree.svg")(show)

@@ -19,6 +19,7 @@ from explore_bt.debug.commands import (
     View,
 )
 from explore_bt.debug.expression import Expression, ExpressionError
+from explore_bt.debug.history import History
 from explore_bt.debug.params import Params
 from explore_bt.debug.session import DebugSession
 from explore_bt.debug.sight import NAMES
@@ -39,6 +40,7 @@ __all__ = [
     "ExpressionError",
     "Force",
     "Forced",
+    "History",
     "Look",
     "Moment",
     "ParamState",

@@ -179,13 +179,14 @@ class DebugSession(Attendant):
         if not runner.is_simulated:
             self._note(f"the robots are held: {why}")
         while self._pausing and not runner.stop.is_raised:
-            self._queue.serve(self._do, _LOOK_UP_S if runner.is_simulated else 0.0, _COMMANDS_A_TICK)
+            # one by one: what waits behind a step is meant for the place it leads to
+            self._queue.serve(self._do, _LOOK_UP_S if runner.is_simulated else 0.0, 1)
             if self._pausing and not runner.is_simulated:
                 runner.hold(f"held by the debugger: {why}")
-        self._pausing = ""
+        if self._pausing:
+            self._go_on(Stride())
         if not runner.is_simulated:
             self._note(f"the robots go on after {runner.now_s - begun_s:.1f} s")
-        self._show(paused=False, why=self._stride.why, robot="", path="", moment="", status="")
 
     def _attended(self) -> Runner:
         assert self._runner is not None  # commands are only done, and nodes only ticked, in a run
@@ -226,7 +227,7 @@ class DebugSession(Attendant):
             case Resume():
                 self._go_on(Stride())
             case Step():
-                self._go_on(Stride.of(command, self._places))
+                self._go_on(Stride.of(command, self._places).after(self._stride))
             case Quit():
                 self._attended().stop.raise_flag("stopped by hand (debugger)")
             case AddBreakpoint():
@@ -255,8 +256,8 @@ class DebugSession(Attendant):
 
     def _go_on(self, stride: Stride) -> None:
         self._stride, self._pausing = stride, ""
-        if not self._state.paused:
-            self._show(why=stride.why)
+        # shown before the command is answered: who then sees a pause sees the next one
+        self._show(paused=False, why=stride.why, robot="", path="", moment="", status="")
 
     def _set_param(self, command: SetParam) -> str:
         if not self._state.paused:

@@ -47,6 +47,14 @@ class Stride:
             stride._last = {id(place.node): place.status for place in places}
         return stride
 
+    def after(self, under_way: Stride) -> Stride:
+        """This one; steps asked for before those of the same kind are done add up."""
+        if under_way._kind is self._kind and under_way._robot == self._robot:
+            self._left += under_way._left
+            self._count += under_way._count
+            self._last = under_way._last
+        return self
+
     @property
     def watches_nodes(self) -> bool:
         """Whether ``next_node`` is to be asked."""

@@ -1,0 +1,142 @@
+"""``explore-bt debug``."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from explore_bt.cli.driving import (
+    GETTING_READY,
+    OutOption,
+    SeedOption,
+    SinkOption,
+    VerboseOption,
+    drive,
+    exit_code,
+    make_sinks,
+    show_result,
+)
+from explore_bt.cli.guard import guarded
+from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
+from explore_bt.cli.places import new_run_folder
+from explore_bt.cli.run_log import run_log
+from explore_bt.errors import UserError
+
+if TYPE_CHECKING:
+    from explore_bt.debug import DebugSession
+    from explore_bt.mission import Mission
+    from explore_bt.plugin import Registry
+    from explore_bt.runtime import StopFlag
+    from explore_bt.types import Result
+
+__all__ = ["debug"]
+
+
+@guarded
+def debug(
+    mission: MissionArgument,
+    set_: SetOption = None,
+    seed: SeedOption = 0,
+    out: OutOption = None,
+    terminal: Annotated[
+        bool, typer.Option("--terminal", help="Commands in the terminal; also over ssh, or from a pipe.")
+    ] = False,
+    sink: SinkOption = None,
+    verbose: VerboseOption = False,
+) -> None:
+    """Drive a mission under a debugger: pause, step, break, force, look back.
+
+    It stands still before the first tick; type help. Ctrl-C pauses, a second one stops the robot
+    safely. Results and exit codes are those of explore-bt run.
+    """
+    if not terminal:
+        raise UserError("explore-bt debug has no page yet; add --terminal")
+    checked, registry = load_checked(mission, set_)
+    folder = new_run_folder(out, checked.path.stem)
+    typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
+    with run_log(folder / "run.log", verbose=verbose):
+        result = _in_terminal(checked, registry, folder, seed, set_ or (), sink or ())
+    show_result(result, folder)
+    raise typer.Exit(exit_code(result.outcome))
+
+
+def new_session(mission: Mission, registry: Registry, settings: Sequence[str]) -> DebugSession:
+    """A session that stands still before the first tick and can change parameters."""
+    from explore_bt.debug import DebugSession, Params
+    from explore_bt.mission import load_mission
+
+    def load(again: Sequence[str]) -> Mission:
+        return load_mission(mission.path, registry, again)
+
+    return DebugSession(Params(mission, load, settings), paused=True)
+
+
+def _in_terminal(
+    mission: Mission,
+    registry: Registry,
+    folder: Path,
+    seed: int,
+    settings: Sequence[str],
+    more_sinks: Sequence[str],
+) -> Result:
+    from rich.console import Console as Screen
+
+    from explore_bt.debug import History
+    from explore_bt.debug.terminal import Console, LineReader
+    from explore_bt.runtime import StopFlag
+
+    session, history, stop = new_session(mission, registry, settings), History(), StopFlag()
+    sinks = [*make_sinks(registry, more_sinks), history]
+    ended: Future[Result] = Future()
+
+    def run() -> None:
+        try:
+            ended.set_result(drive(mission, registry, folder, seed, sinks, stop, session))
+        except BaseException as fault:  # it is raised again where the command can tell it
+            ended.set_exception(fault)
+
+    screen = Screen(highlight=False)
+    console = Console(session, history, LineReader(lambda line: screen.print(line, markup=False)), screen)
+    threading.Thread(target=run, name="the run", daemon=True).start()
+    with _ended_by_sigterm(stop):
+        console.run()
+        return _result(ended, stop)
+
+
+def _result(ended: Future[Result], stop: StopFlag) -> Result:
+    """What the run ended with; who interrupts the waiting wants it to stop."""
+    while True:
+        try:
+            return ended.result()
+        except KeyboardInterrupt:
+            if ended.done():
+                raise
+            stop.raise_flag("stopped by hand (Ctrl-C)")
+            sys.stderr.write("\nstill stopping; Ctrl-\\ ends the program at once\n")
+
+
+@contextmanager
+def _ended_by_sigterm(stop: StopFlag) -> Iterator[None]:
+    """While inside, SIGTERM stops the run safely and ends the reading of commands."""
+    from explore_bt.debug.terminal import Terminated
+
+    def on_signal(_number: int, _frame: FrameType | None) -> None:
+        os.write(2, b"\nstopping: the robot brakes, then the results are saved\n")
+        stop.raise_flag("stopped by hand (SIGTERM)")
+        raise Terminated
+
+    before = signal.signal(signal.SIGTERM, on_signal)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
