@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import threading
 import webbrowser
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -10,7 +13,15 @@ import typer
 if TYPE_CHECKING:
     from explore_bt.debug.web import PageServer
 
-__all__ = ["HostOption", "OpenOption", "PortOption", "TokenOption", "show_page"]
+__all__ = [
+    "HostOption",
+    "OpenOption",
+    "PageOptions",
+    "PortOption",
+    "TokenOption",
+    "show_page",
+    "wait_for_ctrl_c",
+]
 
 HostOption = Annotated[
     str,
@@ -23,8 +34,25 @@ TokenOption = Annotated[
 OpenOption = Annotated[bool, typer.Option("--open", help="Open the page in the browser.")]
 
 
+@dataclass(frozen=True, slots=True)
+class PageOptions:
+    """What was asked for, together."""
+
+    host: str
+    port: int
+    token: str
+    open_it: bool
+
+
 def show_page(server: PageServer, *, open_it: bool) -> None:
     """Say where the page is, in a way that terminals make clickable; open it if wanted."""
     typer.secho(f"page       {server.url}", bold=True)
     if open_it and not webbrowser.open(server.url):
         typer.echo("no browser could be opened here; open that address yourself")
+
+
+def wait_for_ctrl_c(words: str) -> None:
+    """Say what is being waited for, and wait."""
+    typer.echo(words)
+    with suppress(KeyboardInterrupt):
+        threading.Event().wait()

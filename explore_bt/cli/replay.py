@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -11,7 +9,14 @@ import typer
 
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.human import duration
-from explore_bt.cli.page_options import HostOption, OpenOption, PortOption, TokenOption, show_page
+from explore_bt.cli.page_options import (
+    HostOption,
+    OpenOption,
+    PortOption,
+    TokenOption,
+    show_page,
+    wait_for_ctrl_c,
+)
 from explore_bt.errors import UserError
 
 __all__ = ["find_recording", "replay"]
@@ -36,10 +41,9 @@ def replay(
     if recording.damage:
         typer.echo(f"{recording.path}: {recording.damage}")
     with PageServer(Desk(RunFeed.of(recording)), host=host, port=port, token=token) as server:
-        typer.echo(f"{recording.path}: {duration(recording.duration_s)} of mission time; Ctrl-C ends")
+        typer.echo(f"{recording.path}: {duration(recording.duration_s)} of mission time")
         show_page(server, open_it=open_)
-        with suppress(KeyboardInterrupt):
-            threading.Event().wait()
+        wait_for_ctrl_c("Ctrl-C ends it")
 
 
 def find_recording(run: Path) -> Path:

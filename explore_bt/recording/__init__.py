@@ -1,7 +1,13 @@
 """The recording of a run: one MCAP file that outlives a crash and opens in Foxglove as it is."""
 
-from explore_bt.recording.foxglove import decode_grid
-from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions, result_message, run_message
+from explore_bt.recording.foxglove import decode_grid, log_message, stamp_ns
+from explore_bt.recording.mcap_sink import (
+    McapRecorder,
+    McapRecorderOptions,
+    periods_of,
+    result_message,
+    run_message,
+)
 from explore_bt.recording.measurements_reader import decode_measurements
 from explore_bt.recording.message_log import LoggedMessage, MessageLog
 from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
@@ -30,9 +36,12 @@ __all__ = [
     "decode_grid",
     "decode_measurements",
     "followed_topics",
+    "log_message",
+    "periods_of",
     "read_recording",
     "result_message",
     "run_message",
+    "stamp_ns",
     "state_at",
     "to_json",
 ]

@@ -16,7 +16,7 @@ from explore_bt.recording.values import to_json
 from explore_bt.types import Result
 from explore_bt.units import Duration
 
-__all__ = ["McapRecorder", "McapRecorderOptions", "result_message", "run_message"]
+__all__ = ["McapRecorder", "McapRecorderOptions", "periods_of", "result_message", "run_message"]
 
 
 class McapRecorderOptions(PluginOptions):
@@ -46,11 +46,7 @@ class McapRecorder(Sink):
     def open(self, run: RunInfo) -> None:
         """Create the file and write what is known from the start."""
         settings = self._settings
-        periods = Periods(
-            key_frame=stamp_ns(settings.key_frame_period),
-            scan=stamp_ns(settings.scan_period),
-            map=stamp_ns(settings.map_period),
-        )
+        periods = periods_of(settings)
         writer = ChunkWriter(run.folder / "recording.mcap", run.version, stamp_ns(settings.chunk_period))
         writer.register(
             [(topic.pattern, topic.schema) for topic in RUN_TOPICS]
@@ -88,6 +84,15 @@ class McapRecorder(Sink):
         if result is not None:
             writer.write("/result", self._time_ns, result_message(result))
         writer.close()
+
+
+def periods_of(settings: McapRecorderOptions) -> Periods:
+    """How often a robot's messages are written under these options."""
+    return Periods(
+        key_frame=stamp_ns(settings.key_frame_period),
+        scan=stamp_ns(settings.scan_period),
+        map=stamp_ns(settings.map_period),
+    )
 
 
 def run_message(run: RunInfo) -> str:

@@ -10,7 +10,8 @@ from collections.abc import Callable
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from explore_bt.debug.web.desk import Desk
-from explore_bt.debug.web.requests import read_request
+from explore_bt.debug.web.requests import AskCommand, AskLook, read_request
+from explore_bt.errors import UserError
 
 __all__ = ["Client", "Share"]
 
@@ -78,16 +79,20 @@ class Client:
             await self._send(await self._answer_to(message))
 
     async def _answer_to(self, message: str) -> str:
-        id_ = "null"
         try:
             request = read_request(message)
-            id_ = str(request.id)
-            members = await self._share.spend(lambda: self._desk.answer(request))
-        except ValueError as fault:
-            self._faults += id_ == "null"
-            words = str(fault) if id_ != "null" else "not a request of this page"
-            return f'{{"id":{id_},"error":{json.dumps(words)}}}'
-        return f'{{"id":{id_},{members}}}'
+        except ValueError:
+            self._faults += 1
+            return '{"id":null,"error":"not a request of this page"}'
+        try:
+            if isinstance(request, AskLook | AskCommand):
+                members = await self._desk.have_done(request)
+            else:
+                asked = request  # of the kinds that are left
+                members = await self._share.spend(lambda: self._desk.answer(asked))
+        except UserError as fault:
+            return f'{{"id":{request.id},"error":{json.dumps(str(fault))}}}'
+        return f'{{"id":{request.id},{members}}}'
 
     async def _tell_news(self) -> None:
         told = ""

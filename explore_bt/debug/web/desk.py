@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 
+from explore_bt.debug.web.controls import Controls
 from explore_bt.debug.web.feed import RunFeed
-from explore_bt.debug.web.requests import AskFollow, AskRun, AskState, AskTimeline, Request
+from explore_bt.debug.web.requests import AskCommand, AskFollow, AskLook, AskRun, AskState, AskTimeline
+from explore_bt.errors import DebugError
 from explore_bt.recording import LoggedMessage
 
 __all__ = ["Desk"]
@@ -17,13 +19,31 @@ _FOLLOW_NS = 20_000_000_000
 
 
 class Desk:
-    """Turns requests into JSON; the messages inside go out as they were recorded, text for text."""
+    """Turns requests into JSON; the messages inside go out as they were recorded, text for text.
 
-    def __init__(self, feed: RunFeed) -> None:
+    Args:
+        feed: the run.
+        controls: of a run that goes on; without them it can only be looked at.
+    """
+
+    def __init__(self, feed: RunFeed, controls: Controls | None = None) -> None:
         self._feed = feed
+        self._controls = controls
 
-    def answer(self, request: Request) -> str:
-        """The members of the answer, as JSON text."""
+    async def have_done(self, request: AskLook | AskCommand) -> str:
+        """The members of the answer to what the debugger has to do, as JSON text.
+
+        Raises:
+            DebugError: it cannot be done.
+        """
+        if self._controls is None:
+            raise DebugError("this run is a recording: it can only be looked at")
+        if isinstance(request, AskLook):
+            return f'"messages":{_list(await self._controls.look(request.robot))}'
+        return f'"answer":{await self._controls.do(request.command)}'
+
+    def answer(self, request: AskRun | AskState | AskFollow | AskTimeline) -> str:
+        """The members of the answer about the run, as JSON text."""
         match request:
             case AskRun():
                 return self._run()
@@ -33,13 +53,13 @@ class Desk:
                 return self._follow(_ns(after_s), _ns(until_s))
             case AskTimeline(begin=begin):
                 return self._timeline(begin)
-            case _:
-                raise ValueError("a recording can only be looked at")
 
     def news(self) -> str:
         """How far the run is, as JSON."""
-        ready = "true" if self._feed.run_text else "false"
-        return f'{{"end_s":{self._feed.end_ns / 1e9},"ready":{ready},"live":false}}'
+        reach = f'"end_s":{self._feed.end_ns / 1e9},"ready":{json.dumps(bool(self._feed.run_text))}'
+        if self._controls is None:
+            return f'{{{reach},"live":false}}'
+        return f'{{{reach},"live":true,"debug":{self._controls.state()}}}'
 
     def _run(self) -> str:
         log, damage = self._feed.log, json.dumps(self._feed.damage)

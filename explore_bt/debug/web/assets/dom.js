@@ -25,11 +25,11 @@ export function draw(tag, attributes = {}, ...children) {
 }
 
 const GLYPHS = {
-  running: ["M3 1.5 12.5 7 3 12.5Z", "fill"],
-  success: ["M2 7.5 5.6 11 12 3.4", "line"],
-  failure: ["M2.8 2.8 11.2 11.2M11.2 2.8 2.8 11.2", "line"],
+  running: ["M3 1.5 12.5 7 3 12.5Z", "filled"],
+  success: ["M2 7.5 5.6 11 12 3.4", "drawn"],
+  failure: ["M2.8 2.8 11.2 11.2M11.2 2.8 2.8 11.2", "drawn"],
   idle: ["M7 3.2a3.8 3.8 0 1 0 0 7.6a3.8 3.8 0 1 0 0-7.6", "thin"],
-  pause: ["M3.5 2h2.6v10H3.5ZM8 2h2.6v10H8Z", "fill"],
+  pause: ["M3.5 2h2.6v10H3.5ZM8 2h2.6v10H8Z", "filled"],
 };
 
 /** The sign of a status: its shape says as much as its colour. */

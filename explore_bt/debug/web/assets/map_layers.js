@@ -102,7 +102,7 @@ function waypoints({ pen, at, palette, spots }, state) {
 }
 
 function sector({ pen, at, scale, palette, spots }, each) {
-  const [x, y] = at(each.x, each.y), radius = each.range_m * scale, colour = palette[each.state] ?? palette.open;
+  const [x, y] = at(each.x, each.y), radius = (each.range_m ?? 5) * scale, colour = palette[each.state] ?? palette.open;
   pen.beginPath();
   pen.moveTo(x, y);
   pen.arc(x, y, radius, -each.from_rad, -each.to_rad, true);

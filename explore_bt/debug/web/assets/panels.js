@@ -88,15 +88,15 @@ export class BreakpointsPanel {
     const words = `${moment} ${status ? `if ${status}` : ""}${condition ? ` and ${condition}` : ""}`;
     const counted = `${hits} ${hits === 1 ? "hit" : "hits"}${nodes === 1 ? "" : `, ${nodes} nodes`}`;
     return make(
-      "div", { class: `item${fault ? " faulty" : ""}`, title: fault }, box, make("span", { class: "path" }, path), make("span", { class: "hint" }, words),
+      "div", { class: `item${fault ? " faulty" : ""}`, title: fault }, box, make("span", { class: "path", title: path }, tail(path)), make("span", { class: "hint" }, words),
       make("span", { class: "count" }, counted), remover(() => this.command({ do: "RemoveBreakpoint", number })),
     );
   }
 
   #forcedRow({ robot, path, status, answers }) {
     return make(
-      "div", { class: "item" }, make("span", { class: `badge ${status}` }, `forced ${status}`), make("span", { class: "path" }, path),
-      make("span", { class: "count" }, `${answers} answers`), remover(() => this.command({ do: "Release", path, robot })),
+      "div", { class: "item" }, make("span", { class: `badge ${status}` }, `forced ${status}`), make("span", { class: "path", title: path }, tail(path)),
+      make("span", { class: "count" }, `${answers} ${answers === 1 ? "answer" : "answers"}`), remover(() => this.command({ do: "Release", path, robot })),
     );
   }
 
@@ -104,6 +104,12 @@ export class BreakpointsPanel {
     const breakpoint = { path: this.path.value.trim(), moment: this.moment.value, status: this.status.value, condition: this.condition.value.trim() };
     if (await this.command({ do: "AddBreakpoint", breakpoint })) this.path.value = this.condition.value = "";
   }
+}
+
+/** The end of a path, which tells nodes apart. */
+function tail(path) {
+  const parts = path.split("/");
+  return parts.length > 2 ? `…/${parts.slice(-2).join("/")}` : path;
 }
 
 function remover(action) {

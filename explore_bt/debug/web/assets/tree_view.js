@@ -7,6 +7,8 @@ const SIGNS = {
   invert: "¬", force_success: "✓", force_failure: "✗", subtree: "▤", timeout: "◷", if: "if", on_failure: "!", entry: "$",
 };
 
+const LEFT_ALONE_MS = 8000;
+
 /** One robot's tree; `onPick(id)`, `onBreak(id)` when its margin is clicked. */
 export class TreeView {
   #box;
@@ -15,12 +17,15 @@ export class TreeView {
   #folded = new Set();
   #picked = null;
   #found = "";
+  #leaf = null;
+  #touched = 0;
 
   constructor(box, onPick, onBreak) {
     this.#box = box;
     this.onPick = onPick;
     this.onBreak = onBreak;
     box.addEventListener("keydown", (event) => this.#onKey(event));
+    for (const type of ["wheel", "pointerdown", "keydown"]) box.addEventListener(type, () => { this.#touched = performance.now(); }, { passive: true });
   }
 
   /** Another robot's nodes. */
@@ -33,7 +38,7 @@ export class TreeView {
     }
     this.#rows = this.#nodes.map((node) => this.#row(node));
     this.#folded.clear();
-    this.#picked = null;
+    this.#picked = this.#leaf = null;
     this.#box.replaceChildren(...this.#rows.map((row) => row.element));
   }
 
@@ -61,12 +66,22 @@ export class TreeView {
       row.words.title = message;
       element.setAttribute("aria-label", `${node.name}, ${status}${message ? `, ${message}` : ""}`);
     });
+    this.#keepInSight();
+  }
+
+  /** Brings the leaf that runs into sight, unless somebody has just looked for something else. */
+  #keepInSight() {
+    const leaf = this.#rows.findLastIndex((row, id) => row.active && !this.#nodes[id].children.length);
+    if (leaf < 0 || leaf === this.#leaf) return;
+    this.#leaf = leaf;
+    if (performance.now() - this.#touched > LEFT_ALONE_MS) this.#rows[leaf].element.scrollIntoView({ block: "nearest" });
   }
 
   /** Marks a node as the one that details are about. */
   pick(id, scroll = true) {
     if (this.#picked !== null) this.#rows[this.#picked]?.element.removeAttribute("aria-selected");
     this.#picked = id;
+    this.#touched = performance.now();
     if (id === null || !this.#rows[id]) return;
     for (let up = this.#nodes[id].parent; up !== null; up = this.#nodes[up].parent) this.#folded.delete(up);
     this.#layout();
