@@ -53,7 +53,7 @@ function driven({ pen, at, until, palette }, robot) {
   if (count < 2) return;
   pen.beginPath();
   for (let i = 0; i < count; i++) pen.lineTo(...at(x[i], y[i]));
-  pen.strokeStyle = robot.colour ?? palette.driven;
+  pen.strokeStyle = palette[robot.colour];
   pen.globalAlpha = 0.75;
   pen.lineWidth = 1.6;
   pen.lineJoin = "round";
@@ -159,8 +159,8 @@ function body({ pen, at, scale, palette, spots }, robot, pose, ghost) {
   if (!pose) return;
   const [x, y] = at(pose.x, pose.y), radius = Math.max(robot.radius * scale, 4), braking = robot.state.newest.gate?.braking;
   pen.lineWidth = braking ? 3 : 2;
-  pen.strokeStyle = braking ? palette.failure : robot.colour;
-  pen.fillStyle = robot.colour;
+  pen.strokeStyle = braking ? palette.failure : palette[robot.colour];
+  pen.fillStyle = palette[robot.colour];
   pen.globalAlpha = ghost ? 0.4 : 1;
   if (ghost) pen.setLineDash([3, 3]);
   pen.beginPath();

@@ -146,7 +146,8 @@ export class MapView {
 
   #readColours() {
     this.#palette = colours(
-      "unknown", "free", "wall", "soft", "ink", "panel", "scan", "driven", "planned", "waypoint", "taken", "rejected", "open", "failure",
+      "unknown", "free", "wall", "soft", "ink", "panel", "scan", "planned", "waypoint", "taken", "rejected", "open", "failure",
+      ...Array.from({ length: 6 }, (_, index) => `robot-${index}`),
     );
   }
 

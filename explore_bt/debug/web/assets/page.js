@@ -13,7 +13,7 @@ import { TimelineView } from "./timeline_view.js";
 import { TreeView } from "./tree_view.js";
 import { clock, metres, percent, speed } from "./words.js";
 
-const COLOURS = ["#2f6fed", "#d9730d", "#0f9d76", "#b4489b", "#8a6d00", "#c2413b"];
+const COLOURS = 6;
 const RATES = [1, 4, 16];
 const NOTHING = { paused: false, over: false, path: "", moment: "", breakpoints: [], forced: [], params: [], why: "" };
 
@@ -70,7 +70,7 @@ class Page {
     if (this.run) return;
     this.run = run;
     this.#names = Object.keys(run.trees);
-    this.#names.forEach((name, index) => this.#colours.set(name, COLOURS[index % COLOURS.length]));
+    this.#names.forEach((name, index) => this.#colours.set(name, `robot-${index % COLOURS}`));
     this.story = new Story(this.#names);
     this.player = new Player(this.link, this.#names, () => this.#draw());
     Object.assign(this.player, { begin: begin_s, end: end_s, live: news.live && !this.debug.over });
@@ -310,7 +310,7 @@ class Page {
     box.hidden = this.#names.length < 2;
     box.replaceChildren(...this.#names.map((name) => {
       const dot = make("i", {}), button = make("button", { role: "radio" }, dot, name);
-      dot.style.background = this.#colours.get(name);
+      dot.style.background = `var(--${this.#colours.get(name)})`;
       button.dataset.name = name;
       button.onclick = () => this.choose(name);
       return button;
