@@ -193,6 +193,8 @@ class Expression:
         return _LITERALS[name.lower()] if name.lower() in _LITERALS else _plain(seen.name(name))
 
     def _field(self, node: ast.Attribute, value: object) -> object:
+        if value is None:  # of what nobody has written yet
+            return None
         if node.attr == "size" and isinstance(value, np.ndarray | Sequence | Mapping | Set):
             return int(value.size) if isinstance(value, np.ndarray) else len(value)
         fields = (
@@ -200,10 +202,12 @@ class Expression:
         )
         if node.attr in fields:
             return _plain(getattr(value, node.attr))
-        noun = "none" if value is None else type(value).__name__
-        raise self._fault(node, f"{noun} has no field {node.attr}", did_you_mean(node.attr, fields, "fields"))
+        noun, hint = type(value).__name__, did_you_mean(node.attr, fields, "fields")
+        raise self._fault(node, f"{noun} has no field {node.attr}", hint)
 
     def _item(self, node: ast.Subscript, value: object, index: object) -> object:
+        if value is None:
+            return None
         if isinstance(value, Mapping) and isinstance(index, str | int):
             return _plain(value.get(index))
         if isinstance(value, Sequence) and isinstance(index, int) and not isinstance(index, bool):

@@ -40,7 +40,8 @@ def tree_lines(
     """The tree, a node a line; below a node of ``pattern``, if there is one.
 
     Args:
-        infos, nodes: in the same order, parents before children.
+        infos: parents before children.
+        nodes: in the same order.
         pattern: a path with ``*``; empty for the whole tree.
         marked: path of the node paused at.
     """
