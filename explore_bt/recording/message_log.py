@@ -140,13 +140,14 @@ class MessageLog:
                 if (column := self._columns.get(topic)) is None:
                     continue
                 begin = bisect.bisect_left(column.spots, (count,))
-                stamps_ns = column.stamps_ns[begin : begin + most]
-                found += zip(column.spots[begin : begin + most], [topic] * most, stamps_ns, strict=False)
-            end = self._count
+                end = begin + most + 1  # one more tells where to go on
+                stamps_ns = column.stamps_ns[begin:end]
+                found += zip(column.spots[begin:end], [topic] * len(stamps_ns), stamps_ns, strict=True)
+            so_far = self._count
         found.sort()
         rest = found[most:]
         messages = (self._read(topic, stamp_ns, spot) for spot, topic, stamp_ns in found[:most])
-        return [each for each in messages if each is not None], rest[0][0].order if rest else end
+        return [each for each in messages if each is not None], rest[0][0].order if rest else so_far
 
     def _read(self, topic: str, stamp_ns: int, spot: _Spot) -> LoggedMessage | None:
         """None for what was given up since it was found."""
