@@ -42,7 +42,7 @@ class Slow:
     def at(cls, messages, end_s: float) -> Slow:
         slow = cls()
         for message in messages:
-            if message.stamp_s <= end_s and message.topic.startswith("/robot/"):
+            if message.stamp_s <= end_s + 1e-6 and message.topic.startswith("/robot/"):
                 slow.take(message.topic.removeprefix("/robot/"), message.value)
         return slow
 
