@@ -114,7 +114,8 @@ class Expression:
         try:
             return ast.parse(python, mode="eval").body
         except SyntaxError as error:
-            column = min(error.offset or 1, len(self.text) + 1)
+            end = len(self.text) + 1
+            column = min(error.offset or end, end)  # no offset: more was expected
             raise ExpressionError(
                 f"column {column}: not an expression ({error.msg}); allowed: {_ALLOWED}"
             ) from None
