@@ -56,7 +56,16 @@ export class Story {
   _health(robot, stamp, [health, reason], name) { this._line(stamp, name, health === "ok" ? "info" : "warning", `SLAM ${health}${reason ? `: ${reason}` : ""}`); }
   _event(robot, stamp, [level, source, message], name) { this._line(stamp, name, level, message, null, source); }
 
-  _line(stamp, robot, kind, words, id = null, source = "") { this.lines.push({ stamp, robot, kind, words, id, source }); }
+  /** What several say at once (a leaf, the nodes above it, an event) is said once, by the leaf. */
+  _line(stamp, robot, kind, words, id = null, source = "") {
+    for (let i = this.lines.length - 1; i >= 0 && this.lines[i].stamp === stamp; i--) {
+      const said = this.lines[i];
+      if (said.robot !== robot || said.words !== words) continue;
+      if (id !== null) said.id = id;
+      return;
+    }
+    this.lines.push({ stamp, robot, kind, words, id, source });
+  }
 
   /** Status and reason of a node at a time, with when that began. */
   nodeAt(name, id, time) {
