@@ -18,7 +18,7 @@ export const KEYS = [
 /** `actions`: key -> what it does; typing in a field is left alone. */
 export function listen(actions) {
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     const typing = event.target.closest("input, select, textarea");
     if (typing) { if (event.key === "Escape") typing.blur(); return; }
     if (event.key === " " && event.target.closest("button, summary")) event.target.blur();
