@@ -159,8 +159,8 @@ def assert_drawn(seen: Seen, state: RobotState) -> None:
     shades = {name: seen.shade(name) for name in ("free", "wall", "unknown")}
     pose = state.newest["pose"].value["pose"]["position"]
     expected = []
-    for row in range(2, grid.shape[0] - 2, 13):
-        for col in range(2, grid.shape[1] - 2, 13):
+    for row in range(2, grid.shape[0] - 2, 9):
+        for col in range(2, grid.shape[1] - 2, 9):
             around = grid.cells[row - 1 : row + 2, col - 1 : col + 2]
             x = grid.origin_xy[0] + (col + 0.5) * grid.resolution_m
             y = grid.origin_xy[1] + (row + 0.5) * grid.resolution_m
@@ -277,7 +277,7 @@ trees:
       times: 9
       child:
         sequence:
-          - choose_place: {x: 4.5 m, y: 1.5 m}
+          - choose_place: {x: 3.5 m, y: 1.5 m}
           - drive_to: {}
             name: out
           - wait: {duration: $params.first}
@@ -343,6 +343,9 @@ def test_a_mission_is_paused_stepped_broken_and_looked_back_at(live, see):
     seen.until("document.querySelector(\".row[data-paused='after']\")")
     assert seen.rows() == [(i.name, n.status, n.message) for i, n in looked_at(run)]
 
+    seen.page.click("#tabs >> text=Breakpoints")
+    seen.page.click("#breakpoints .remove")
+    seen.until("page.debug.breakpoints.length === 0")
     run.finish()
     seen.until("page.debug.over && !page.player.live")
     file = read_recording(run.out / "recording.mcap")

@@ -8,6 +8,7 @@ import { MapView } from "./map_view.js";
 import { NodeView } from "./node_view.js";
 import { BreakpointsPanel, ParametersPanel, ReasonsPanel, showBlackboard } from "./panels.js";
 import { Player } from "./player.js";
+import { RunState } from "./run_state.js";
 import { after, Story } from "./story.js";
 import { TimelineView } from "./timeline_view.js";
 import { TreeView } from "./tree_view.js";
@@ -46,7 +47,12 @@ class Page {
 
   get live() { return this.player?.live ?? false; }
   get nodes() { return this.run.trees[this.robot]; }
-  get state() { return this.#looked?.robots.get(this.robot) ?? this.player.state.robots.get(this.robot); }
+
+  /** The robot at the moment shown. */
+  get state() {
+    const state = this.player.state.robots.get(this.robot), now = this.#looked?.robots.get(this.robot);
+    return this.player.following && now?.nodes.length ? { ...state, nodes: now.nodes, board: now.board } : state;
+  }
 
   // --- the server ---------------------------------------------------------------------------------------
 
@@ -110,14 +116,14 @@ class Page {
 
   /** In the middle of a tick the tree is ahead of what was recorded. */
   async #look() {
-    const key = this.debug.paused && this.debug.path && this.player.live ? `${this.debug.stamp_s}|${this.debug.path}|${this.debug.moment}` : "";
-    if (!key) { if (this.#looked) { this.#looked = null; this.#draw(); } return; }
+    if (!this.debug.paused || !this.debug.path) {
+      if (this.#looked) { this.#looked = null; this.#draw(); }
+      return;
+    }
     try {
       const { messages } = await this.link.ask("look", { robot: this.debug.robot });
-      const looked = new (this.player.state.constructor)(this.#names);
-      for (const [name, robot] of looked.robots) Object.assign(robot, this.player.state.robots.get(name), { nodes: [...this.player.state.robots.get(name).nodes] });
-      for (const message of messages) looked.take(message);
-      this.#looked = this.player.following ? looked : null;
+      this.#looked = new RunState(this.#names);
+      for (const message of messages) this.#looked.take(message);
     } catch { this.#looked = null; }
     this.#draw();
   }
@@ -139,7 +145,6 @@ class Page {
   choose(name) {
     this.robot = name;
     this.picked = null;
-    this.#looked = null;
     this.tree.show(this.nodes);
     this.breakpoints.offer(this.nodes);
     for (const each of byId("robots").children) each.setAttribute("aria-checked", String(each.dataset.name === name));
@@ -154,7 +159,6 @@ class Page {
 
   seek(time) {
     this.player.playing = false;
-    this.#looked = null;
     this.player.seek(time);
   }
 

@@ -35,8 +35,8 @@ export class Player {
   /** The run reaches further now, or the debugger's state is another. */
   extend(end) {
     this.end = end;
-    if (this.following && !this.#busy) this.#follow();
-    else this.#onChange();
+    this.#catchUp();
+    this.#onChange();
   }
 
   /** Shows a moment; of several asked for in a row, the last. */
@@ -61,28 +61,25 @@ export class Player {
     this.#onChange();
   }
 
-  async #seek(time) {
+  #seek(time) {
     this.#sought = Math.min(Math.max(time, this.begin), this.end);
+    return this.#catchUp();
+  }
+
+  /** One question at a time: what was sought last, then, if now is followed, what came since. */
+  async #catchUp() {
     if (this.#busy) return;
     this.#busy = true;
     try {
-      while (this.#sought !== null) {
+      while (this.#sought !== null || (this.following && this.time < this.end)) {
         const at_s = this.#sought;
         this.#sought = null;
-        this.#show(await this.#link.ask("state", { at_s }));
+        const answer = await (at_s === null
+          ? this.#link.ask("follow", { after_s: this.time, until_s: this.end })
+          : this.#link.ask("state", { at_s }));
+        if (at_s !== null || (this.following && this.#sought === null)) this.#show(answer);
       }
     } catch { /* the link says so itself */ } finally { this.#busy = false; }
-  }
-
-  async #follow() {
-    this.#busy = true;
-    try {
-      while (this.following && this.time < this.end && this.#sought === null) {
-        const answer = await this.#link.ask("follow", { after_s: this.time, until_s: this.end });
-        if (this.following && this.#sought === null) this.#show(answer);
-      }
-    } catch { /* as above */ } finally { this.#busy = false; }
-    if (this.#sought !== null) this.#seek(this.#sought);
   }
 
   #show(answer) {
