@@ -15,6 +15,7 @@ import zstandard
 
 __all__ = ["LoggedMessage", "MessageLog"]
 
+_AT_HAND = -1  # in place of a chunk
 _UNPACKED = 32  # chunks kept unpacked; a seek touches about ten
 
 
@@ -60,13 +61,22 @@ class MessageLog:
         chunk_ns: mission time that goes into one chunk.
         limit_bytes: of compressed messages; beyond it the oldest chunk is given up, save the last
             message of each topic. None: no limit.
+        at_hand: endings of topics whose messages are neither packed nor given up: few and short ones, of
+            which a state needs all.
     """
 
-    def __init__(self, chunk_ns: int = 1_000_000_000, limit_bytes: int | None = None) -> None:
+    def __init__(
+        self,
+        chunk_ns: int = 1_000_000_000,
+        limit_bytes: int | None = None,
+        at_hand: tuple[str, ...] = ("/visited",),
+    ) -> None:
         self._chunk_ns = chunk_ns
         self._limit_bytes = limit_bytes
         self._index_lock, self._unpack_lock = threading.Lock(), threading.Lock()
         self._columns: dict[str, _Column] = {}
+        self._endings_at_hand = at_hand
+        self._at_hand: list[LoggedMessage] = []
         self._packed: OrderedDict[int, bytes] = OrderedDict()
         self._unpacked: OrderedDict[int, bytes] = OrderedDict()
         self._packed_bytes = 0
@@ -95,10 +105,14 @@ class MessageLog:
             if not self._open:
                 self._open_begin_ns = stamp_ns
             column = self._columns.setdefault(topic, _Column())
-            begin = len(self._open)
-            self._open += data
             column.stamps_ns.append(stamp_ns)
-            column.spots.append(_Spot(self._count, self._open_index, begin, len(self._open)))
+            if topic.endswith(self._endings_at_hand):
+                column.spots.append(_Spot(self._count, _AT_HAND, len(self._at_hand), 0))
+                self._at_hand.append(LoggedMessage(topic, stamp_ns, data.decode()))
+            else:
+                begin = len(self._open)
+                self._open += data
+                column.spots.append(_Spot(self._count, self._open_index, begin, len(self._open)))
             self._count += 1
             self.end_ns = max(self.end_ns, stamp_ns)
 
@@ -151,6 +165,8 @@ class MessageLog:
 
     def _read(self, topic: str, stamp_ns: int, spot: _Spot) -> LoggedMessage | None:
         """None for what was given up since it was found."""
+        if spot.chunk == _AT_HAND:
+            return self._at_hand[spot.begin]
         with self._index_lock:
             if spot.chunk == self._open_index:
                 data = bytes(self._open[spot.begin : spot.end])
@@ -182,7 +198,7 @@ class MessageLog:
         plain = zstandard.ZstdDecompressor().decompress(packed)  # rare, and the other one may be in use
         for topic, column in self._columns.items():
             count = bisect.bisect_right(column.spots, chunk, key=lambda spot: spot.chunk)
-            if not count:
+            if not count or column.spots[0].chunk == _AT_HAND:
                 continue
             stamp_ns, spot = column.stamps_ns[count - 1], column.spots[count - 1]
             column.before = LoggedMessage(topic, stamp_ns, plain[spot.begin : spot.end].decode())

@@ -122,3 +122,17 @@ def test_of_messages_at_one_moment_the_last_counts(at_ns):
     found = log.last("/a", at_ns)
     assert found is not None
     assert found.text == "y"
+
+
+def test_what_a_state_needs_all_of_is_kept_whatever_the_limit():
+    log = MessageLog(chunk_ns=3, limit_bytes=100, at_hand=("/b",))
+    told = [LoggedMessage("/a" if k % 5 else "/b", k, f"{k} {k * k}") for k in range(500)]
+    for message in told:
+        log.add(message.topic, message.stamp_ns, message.text)
+    assert list(log.between(["/b"], -1, 500)) == [message for message in told if message.topic == "/b"]
+    assert len(list(log.between(["/a"], -1, 500))) < 300
+    count, read = 0, []
+    while count < len(log):
+        some, count = log.after(["/b"], count, 7)
+        read += some
+    assert read == [message for message in told if message.topic == "/b"]

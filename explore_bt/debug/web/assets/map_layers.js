@@ -7,6 +7,8 @@ export const LAYERS = {
   "half-planes": "Half-planes", frontiers: "Frontiers", views: "Views", robots: "Other robots", truth: "True pose",
 };
 
+const MOST_POSES = 4000;
+
 /** Draws what is switched on, the farthest back first. */
 export function drawLayers(map) {
   const { scene, picked, layers } = map;
@@ -52,7 +54,9 @@ function driven({ pen, at, until, palette }, robot) {
   const { x, y } = robot.story.poses, count = until(robot);
   if (count < 2) return;
   pen.beginPath();
-  for (let i = 0; i < count; i++) pen.lineTo(...at(x[i], y[i]));
+  const every = Math.ceil(count / MOST_POSES);
+  for (let i = 0; i < count; i += every) pen.lineTo(...at(x[i], y[i]));
+  pen.lineTo(...at(x[count - 1], y[count - 1]));
   pen.strokeStyle = palette[robot.colour];
   pen.globalAlpha = 0.75;
   pen.lineWidth = 1.6;

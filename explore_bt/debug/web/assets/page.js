@@ -246,7 +246,7 @@ class Page {
       })),
     });
     this.timeline.show({
-      begin: player.begin, end: player.end, time, picked: this.picked, lines: this.story.lines,
+      begin: player.begin, end: player.end, time, picked: this.picked, lines: this.story.lines, count: this.story.count,
       robot: { name: this.robot, nodes: this.nodes, story: this.story.robots.get(this.robot), parents: this.#parents() },
     });
     this.#drawTab(state, time);

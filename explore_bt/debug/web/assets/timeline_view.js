@@ -16,6 +16,7 @@ export class TimelineView {
   #scene = null;
   #window = null;
   #dragging = false;
+  #drawn = { key: "", canvas: document.createElement("canvas") };
 
   constructor(canvas, onSeek) {
     this.#canvas = canvas;
@@ -29,7 +30,7 @@ export class TimelineView {
     canvas.addEventListener("dblclick", () => { this.#window = null; this.draw(); });
   }
 
-  /** `scene`: begin, end, time, robot {name, story, nodes}, picked node, lines, following. */
+  /** `scene`: begin, end, time, robot {name, story, nodes, parents}, picked node, lines, count of the story. */
   show(scene) {
     this.#scene = scene;
     this.draw();
@@ -70,18 +71,30 @@ export class TimelineView {
   }
 
   draw() {
-    const pen = fitted(this.#canvas), scene = this.#scene;
-    const width = this.#canvas.clientWidth, height = this.#canvas.clientHeight;
-    pen.clearRect(0, 0, width, height);
+    const scene = this.#scene, width = this.#canvas.clientWidth, height = this.#canvas.clientHeight;
     if (!scene || !width) return;
     this.#keepInSight();
+    const pen = fitted(this.#canvas), { begin, end, picked, robot, count } = scene;
+    const key = [width, height, this.#canvas.width, ...this.#span, begin, end, picked, robot.name, count, this.#palette.ink].join();
+    if (key !== this.#drawn.key) this.#drawBehind(key, width, height);
+    pen.clearRect(0, 0, width, height);
+    pen.drawImage(this.#drawn.canvas, 0, 0, width, height);
+    this.#drawHead(pen, height);
+  }
+
+  /** All but the head, which alone moves while a recording is scrubbed. */
+  #drawBehind(key, width, height) {
+    const { canvas } = this.#drawn;
+    Object.assign(canvas, { width: this.#canvas.width, height: this.#canvas.height });
+    this.#drawn.key = key;
+    const pen = canvas.getContext("2d");
+    pen.scale(canvas.width / width, canvas.height / height);
     pen.font = "11px system-ui, sans-serif";
     pen.textBaseline = "middle";
     this.#drawAxis(pen, width, height);
     this.#drawMarks(pen);
     this.#drawCurves(pen, width);
     this.#drawLanes(pen, width, height);
-    this.#drawHead(pen, height);
   }
 
   #keepInSight() {
