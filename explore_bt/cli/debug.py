@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated
@@ -159,9 +158,13 @@ def _in_terminal(
     screen = Screen(highlight=False)
     console = Console(session, history, LineReader(lambda line: screen.print(line, markup=False)), screen)
     threading.Thread(target=run, name="the run", daemon=True).start()
-    with _ended_by_sigterm(stop):
-        console.run()
-        return _result(ended, stop)
+    with _ended_by_signal(stop):
+        try:
+            console.run()
+        finally:  # however the console ended: no robot drives on without it
+            stop.raise_flag("stopped by hand (debugger)")
+            result = _result(ended, stop)
+        return result
 
 
 def _result(ended: Future[Result], stop: StopFlag) -> Result:
@@ -170,24 +173,30 @@ def _result(ended: Future[Result], stop: StopFlag) -> Result:
         try:
             return ended.result()
         except KeyboardInterrupt:
-            if ended.done():
-                raise
             stop.raise_flag("stopped by hand (Ctrl-C)")
-            sys.stderr.write("\nstill stopping; Ctrl-\\ ends the program at once\n")
+            _tell(b"\nstill stopping; Ctrl-\\ ends the program at once\n")
 
 
 @contextmanager
-def _ended_by_sigterm(stop: StopFlag) -> Iterator[None]:
-    """While inside, SIGTERM stops the run safely and ends the reading of commands."""
+def _ended_by_signal(stop: StopFlag) -> Iterator[None]:
+    """While inside, SIGTERM and a lost terminal stop the run safely and end the reading of commands."""
     from explore_bt.debug.terminal import Terminated
 
-    def on_signal(_number: int, _frame: FrameType | None) -> None:
-        os.write(2, b"\nstopping: the robot brakes, then the results are saved\n")
-        stop.raise_flag("stopped by hand (SIGTERM)")
-        raise Terminated
+    def on_signal(number: int, _frame: FrameType | None) -> None:
+        _tell(b"\nstopping: the robot brakes, then the results are saved\n")
+        if not stop.is_raised:  # else the reading has ended already
+            stop.raise_flag(f"stopped by hand ({signal.Signals(number).name})")
+            raise Terminated
 
-    before = signal.signal(signal.SIGTERM, on_signal)
+    before = {number: signal.signal(number, on_signal) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _tell(words: bytes) -> None:
+    """``os.write``: print is not safe in a handler; and the terminal may be gone."""
+    with suppress(OSError):
+        os.write(2, words)

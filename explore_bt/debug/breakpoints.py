@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from py_trees.behaviour import Behaviour
+
 from explore_bt.debug.breakpoint import STATUSES, Breakpoint, Moment
 from explore_bt.debug.expression import Expression, ExpressionError
 from explore_bt.debug.places import Place, Places
@@ -13,10 +15,12 @@ from explore_bt.debug.sight import Sight
 from explore_bt.debug.state import BreakpointState
 from explore_bt.errors import DebugError
 from explore_bt.mission.words import did_you_mean
+from explore_bt.tree import Status, status_word
 
 __all__ = ["Breakpoints"]
 
 MOST = 1000
+_STATUSES = {status_word(status): status for status in Status}
 
 
 @dataclass(slots=True, eq=False)
@@ -25,6 +29,7 @@ class _Set:
     breakpoint: Breakpoint
     condition: Expression | None
     places: tuple[Place, ...]
+    status: Status | None
     hits: int = 0
     fault: str = ""
 
@@ -49,11 +54,11 @@ class Breakpoints:
         self._now = now
         self._next = 1
         self._set: dict[int, _Set] = {}
-        self._at: dict[tuple[int, Moment], list[_Set]] = {}
+        self._at: dict[Moment, dict[int, list[_Set]]] = {moment: {} for moment in Moment}
         self.have_news = False
 
     def __bool__(self) -> bool:
-        return bool(self._at)
+        return any(self._at.values())
 
     def states(self) -> tuple[BreakpointState, ...]:
         """All that are set, in their order; no news after that."""
@@ -75,7 +80,7 @@ class Breakpoints:
             for robot in {id(place.robot): place.robot for place in places}.values():
                 condition.check(robot)
         number, self._next = self._next, self._next + 1
-        self._set[number] = _Set(number, wanted, condition, places)
+        self._set[number] = _Set(number, wanted, condition, places, _STATUSES.get(wanted.status))
         self._sort()
         return number
 
@@ -93,21 +98,24 @@ class Breakpoints:
         found.breakpoint = replace(found.breakpoint, enabled=bool(enabled))
         self._sort()
 
-    def hit(self, place: Place, moment: Moment) -> str:
-        """Why to stop here, in words; empty if there is no reason to."""
-        stops = ""
-        for each in list(self._at.get((id(place.node), moment), ())):
+    def hit(self, node: Behaviour, moment: Moment) -> str:
+        """Why to stop at a node, in words; empty if there is no reason to."""
+        watched = self._at[moment].get(id(node))
+        if watched is None or all(each.status not in (None, node.status) for each in watched):
+            return ""
+        place, stops = self._places.of(node), ""
+        for each in list(watched):
             if self._holds(each, place):
                 each.hits += 1
                 self.have_news = True
-                if each.hits > each.breakpoint.ignore and not stops:
-                    stops = f"breakpoint {each.number}: {_told(place, moment)}"
+                if each.hits > each.breakpoint.ignore:
+                    stops = stops or f"breakpoint {each.number}: {_told(place, moment)}"
                     if each.breakpoint.once:
                         self.remove(each.number)
         return stops
 
     def _holds(self, each: _Set, place: Place) -> bool:
-        if each.breakpoint.status and place.status != each.breakpoint.status:
+        if each.status not in (None, place.node.status):
             return False
         if each.condition is None:
             return True
@@ -128,11 +136,12 @@ class Breakpoints:
         return self._set[number]
 
     def _sort(self) -> None:
-        self._at.clear()
+        for watched in self._at.values():
+            watched.clear()
         for each in self._set.values():
             if each.breakpoint.enabled:
                 for place in each.places:
-                    self._at.setdefault((id(place.node), each.breakpoint.moment), []).append(each)
+                    self._at[each.breakpoint.moment].setdefault(id(place.node), []).append(each)
 
 
 def _told(place: Place, moment: Moment) -> str:

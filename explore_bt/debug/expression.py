@@ -96,9 +96,12 @@ class Expression:
     def holds(self, seen: Seen) -> bool:
         """Whether it is true, or something that is neither zero, empty nor none."""
         value = self.value(seen)
-        if isinstance(value, np.ndarray):
-            raise self._fault(self._root, "an array is neither true nor false", "compare its .size")
-        return bool(value)
+        try:
+            return self._true(self._root, value)
+        except ExpressionError:
+            raise
+        except Exception as error:  # a plugin's value may raise whatever it likes
+            raise self._fault(self._root, f"{type(error).__name__}: {error}") from None
 
     # --- reading ---------------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from explore_bt.debug.places import Place, Places
@@ -44,11 +44,10 @@ class ForcedAnswers:
             raise DebugError(f'a node cannot be forced to "{status}"; say success or failure')
         places = self._places.matching(path, robot)
         meant = frozenset(id(place.node) for place in places)
-        until = "once" if once else "until released"
         for place in places:
             self._forced[id(place.node)] = Forced(place.robot.name, place.info.path, status, bool(once))
             self._together[id(place.node)] = meant
-            self._tell(f"{place} is forced to {status.upper()} {until}", place.robot.name)
+        self._tell_each(places, f"forced to {status.upper()} {'once' if once else 'until released'}")
         return len(places)
 
     def release(self, path: str, robot: str) -> int:
@@ -56,8 +55,14 @@ class ForcedAnswers:
         found = tuple(place for place in self._places.matching(path, robot) if id(place.node) in self._forced)
         for place in found:
             del self._forced[id(place.node)]
-            self._tell(f"{place} is forced no more", place.robot.name)
+        self._tell_each(found, "forced no more")
         return len(found)
+
+    def _tell_each(self, places: Sequence[Place], what: str) -> None:
+        """One event a robot, however many nodes."""
+        for robot in dict.fromkeys(place.robot.name for place in places):
+            own = [str(place) for place in places if place.robot.name == robot]
+            self._tell(f"{own[0]} is {what}" if len(own) == 1 else f"{len(own)} nodes are {what}", robot)
 
     def answer(self, place: Place) -> Status | None:
         """What to answer in the node's place, if anything."""
@@ -73,8 +78,10 @@ class ForcedAnswers:
         if not forced.answers:
             self._tell(f"{place}: {node.feedback_message}", place.robot.name)
         if forced.once:
-            for each in self._together[id(node)]:
-                self._forced.pop(each, None)
+            meant = self._together[id(node)]
+            for each in meant:
+                if self._together[each] is meant:  # it was not forced anew since
+                    self._forced.pop(each, None)
         else:
             self._forced[id(node)] = replace(forced, answers=forced.answers + 1)
         if forced.status == "failure" and isinstance(node, Leaf):

@@ -79,9 +79,7 @@ class Params:
         try:
             again, after = load(self._settings), load(settings)
         except MissionError as error:
-            faults = "; ".join(
-                ": ".join(filter(None, (fault.message, fault.hint))) for fault in error.faults
-            )
+            faults = "; ".join(": ".join(filter(None, (fault.message, fault.hint))) for fault in error.faults)
             raise DebugError(faults or str(error)) from None
         if again.sha256 != before.sha256:
             raise DebugError("the mission's files have changed since the run began; start again")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -10,11 +11,13 @@ from typing import Any, TypeVar
 
 from explore_bt.debug.commands import Command
 from explore_bt.debug.herald import Errands
-from explore_bt.errors import DebugError
+from explore_bt.errors import DebugError, UserError
 
 __all__ = ["CommandQueue"]
 
 T = TypeVar("T")
+
+_log = logging.getLogger("explore_bt")
 
 MOST_WAITING = 1000
 _PATIENCE_S = 2.0
@@ -42,20 +45,24 @@ class CommandQueue:
             future.set_exception(DebugError(refusal))
         return future
 
-    def serve(self, do: Callable[[Command[Any]], object], patience_s: float, most: int) -> None:
-        """Have ``do`` answer up to ``most`` commands, waiting so long for the first."""
-        for _ in range(most):
-            try:
-                command, future = self._commands.get(timeout=patience_s) if patience_s else self._at_once()
-            except Empty:
-                return
-            patience_s = 0.0
-            try:
-                answer = do(command)
-            except Exception as fault:  # a client's fault must not become the tick thread's
-                self._deliver(future, fault, failed=True)
-            else:
-                self._deliver(future, answer, failed=False)
+    def serve(self, do: Callable[[Command[Any]], object], patience_s: float = 0.0) -> bool:
+        """Have ``do`` answer the next command, waiting so long for one; whether there was one."""
+        try:
+            waits = patience_s > 0.0
+            command, future = self._commands.get(waits, patience_s if waits else None)
+        except Empty:
+            return False
+        try:
+            answer = do(command)
+        except UserError as refusal:
+            self._deliver(future, refusal, failed=True)
+        except Exception as fault:  # nonsense in a command must not become the tick thread's
+            _log.debug("%s was not understood", type(command).__name__, exc_info=True)
+            nonsense = DebugError(f"{type(command).__name__} cannot be done: {fault!r}")
+            self._deliver(future, nonsense, failed=True)
+        else:
+            self._deliver(future, answer, failed=False)
+        return True
 
     def close(self, reason: str) -> None:
         """Refuse what still waits, and all that comes."""
@@ -65,11 +72,9 @@ class CommandQueue:
         def refuse(_: Command[Any]) -> object:
             raise DebugError(reason)
 
-        self.serve(refuse, 0.0, 2 * MOST_WAITING)
+        while self.serve(refuse):
+            pass
         self._errands.close(_PATIENCE_S)
-
-    def _at_once(self) -> tuple[Command[Any], Future[Any]]:
-        return self._commands.get_nowait()
 
     def _refusal(self, command: object) -> str:
         if not isinstance(command, Command):

@@ -38,9 +38,9 @@ from explore_bt.debug.sight import Sight
 from explore_bt.debug.state import DebugState
 from explore_bt.debug.stride import Stride
 from explore_bt.errors import DebugError
-from explore_bt.interfaces import Event
+from explore_bt.interfaces import Event, NodeState
 from explore_bt.runtime import Attendant, Robot, Runner
-from explore_bt.tree import Probe, Status
+from explore_bt.tree import Probe, Status, status_word
 
 __all__ = ["DebugSession"]
 
@@ -62,6 +62,9 @@ class DebugSession(Attendant):
     Args:
         params: reads the mission again for ``SetParam``; without it no parameter can be changed.
         paused: whether to stand still before the first tick.
+
+    Attributes:
+        is_alert: whether nodes are looked at one by one.
     """
 
     def __init__(self, params: Params | None = None, *, paused: bool = False) -> None:
@@ -73,6 +76,7 @@ class DebugSession(Attendant):
         self._pausing = "before the first tick" if paused else ""
         self._state = DebugState(params=self._params.states)
         self._runner: Runner | None = None
+        self.is_alert = False
 
     # --- for clients, from any thread -------------------------------------------------------------------
 
@@ -111,7 +115,7 @@ class DebugSession(Attendant):
         """Stand beside every node of every tree."""
         self._places = Places(runner.robots)
         self._breakpoints = Breakpoints(self._places, lambda: (runner.tick, runner.now_s))
-        self._forced = ForcedAnswers(self._places, self._note)
+        self._forced = ForcedAnswers(self._places, self._warn)
         self._runner = runner
         for robot in runner.robots:
             robot.watch_ticks(_Beside(self))
@@ -119,9 +123,12 @@ class DebugSession(Attendant):
 
     def on_period(self) -> None:
         """Answer what was asked meanwhile."""
+        self._look_up()
         if self._breakpoints.have_news:
             self._show()
-        self._queue.serve(self._do, 0.0, _COMMANDS_A_TICK)
+        for _ in range(_COMMANDS_A_TICK):
+            if not self._queue.serve(self._do):
+                break
 
     def before_tick(self) -> None:
         """Pause here if that was asked for."""
@@ -141,31 +148,27 @@ class DebugSession(Attendant):
         for listener in listeners:
             listener.close()
 
-    @property
-    def is_alert(self) -> bool:
-        """Whether nodes are to be looked at one by one."""
-        return bool(self._stride.watches_nodes or self._breakpoints or self._forced)
-
     def before(self, node: Behaviour) -> Status | None:
         """Before a node is ticked: stop at a breakpoint, then answer in its place if that is wanted."""
-        place = self._places.of(node)
-        if why := self._breakpoints.hit(place, Moment.BEFORE):
-            self._stand_still(why, place, Moment.BEFORE)
-        return self._forced.answer(place)
+        if why := self._breakpoints.hit(node, Moment.BEFORE):
+            self._stand_still(why, self._places.of(node), Moment.BEFORE)
+        return self._forced.answer(self._places.of(node)) if self._forced else None
 
     def after(self, node: Behaviour) -> None:
         """After a node's tick: stop where a step ends, or at a breakpoint."""
-        place = self._places.of(node)
-        why = self._stride.next_node(place)
-        why = self._breakpoints.hit(place, Moment.AFTER) or why
+        why = self._stride.next_node(self._places.of(node)) if self._stride.watches_nodes else ""
+        why = self._breakpoints.hit(node, Moment.AFTER) or why
         if why:
-            self._stand_still(why, place, Moment.AFTER)
+            self._stand_still(why, self._places.of(node), Moment.AFTER)
 
     # --- standing still ---------------------------------------------------------------------------------
 
     def _stand_still(self, why: str, place: Place | None = None, moment: Moment | None = None) -> None:
         runner = self._attended()
         self._stride.end()
+        if self._is_to_stop():
+            self._pausing = ""
+            return
         self._pausing = why
         self._show(
             paused=True,
@@ -178,15 +181,23 @@ class DebugSession(Attendant):
         begun_s = runner.now_s
         if not runner.is_simulated:
             self._note(f"the robots are held: {why}")
-        while self._pausing and not runner.stop.is_raised:
-            # one by one: what waits behind a step is meant for the place it leads to
-            self._queue.serve(self._do, _LOOK_UP_S if runner.is_simulated else 0.0, 1)
+        while self._pausing and not self._is_to_stop():
+            self._answer_while_paused(_LOOK_UP_S if runner.is_simulated else 0.0)
             if self._pausing and not runner.is_simulated:
                 runner.hold(f"held by the debugger: {why}")
         if self._pausing:
             self._go_on(Stride())
         if not runner.is_simulated:
             self._note(f"the robots go on after {runner.now_s - begun_s:.1f} s")
+
+    def _is_to_stop(self) -> bool:
+        return self._attended().stop.is_raised
+
+    def _answer_while_paused(self, patience_s: float) -> None:
+        """What waits behind a step is meant for the place it leads to."""
+        for _ in range(_COMMANDS_A_TICK):
+            if not self._pausing or not self._queue.serve(self._do, patience_s):
+                break
 
     def _attended(self) -> Runner:
         assert self._runner is not None  # commands are only done, and nodes only ticked, in a run
@@ -196,6 +207,7 @@ class DebugSession(Attendant):
         """Publish the state with these changes."""
         runner = self._runner
         if runner is not None:
+            self._look_up()
             changes |= {
                 "breakpoints": self._breakpoints.states(),
                 "forced": self._forced.states,
@@ -208,9 +220,17 @@ class DebugSession(Attendant):
             for listener in self._listeners:
                 listener.tell(self._state)
 
-    def _note(self, message: str, robot: str = "") -> None:
+    def _look_up(self) -> None:
+        """See anew whether nodes are to be looked at one by one."""
+        self.is_alert = bool(self._stride.watches_nodes or self._breakpoints or self._forced)
+
+    def _note(self, message: str, robot: str = "", level: str = "info") -> None:
         runner = self._attended()
-        runner.tell(Event(runner.now_s, robot, "info", "debugger", message))
+        runner.tell(Event(runner.now_s, robot, level, "debugger", message))
+
+    def _warn(self, message: str, robot: str = "") -> None:
+        """Note what makes this run another one than the mission's."""
+        self._note(message, robot, "warning")
 
     # --- commands ---------------------------------------------------------------------------------------
 
@@ -253,6 +273,7 @@ class DebugSession(Attendant):
     def _pause(self) -> None:
         if not self._state.paused:
             self._pausing = "paused by hand"
+            self._show(why="pausing before the next tick")
 
     def _go_on(self, stride: Stride) -> None:
         self._stride, self._pausing = stride, ""
@@ -263,7 +284,7 @@ class DebugSession(Attendant):
         if not self._state.paused:
             raise DebugError("a parameter can be changed while the run is paused; pause first")
         changed = self._params.change(command.name, command.text, self._places)
-        self._note(changed)
+        self._warn(changed)
         return changed
 
     def _evaluate(self, command: Evaluate) -> object:
@@ -278,7 +299,8 @@ class DebugSession(Attendant):
 
     def _look(self, command: Look) -> View:
         robot = self._robot(command.robot)
-        return View(robot.name, robot.node_states(), dict(robot.blackboard))
+        nodes = tuple(NodeState(status_word(node.status), node.feedback_message) for node in robot.tree.nodes)
+        return View(robot.name, nodes, dict(robot.blackboard))
 
     def _robot(self, name: str) -> Robot:
         return self._places.robot(name or self._state.robot or next(iter(self._places.robots)))

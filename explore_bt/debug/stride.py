@@ -37,12 +37,8 @@ class Stride:
         if not any(fnmatchcase(name, step.robot) for name in places.robots):
             places.robot(step.robot)
         stride = cls()
-        stride._kind, stride._left, stride._count, stride._robot = (
-            step.kind,
-            step.count,
-            step.count,
-            step.robot,
-        )
+        stride._kind, stride._robot = step.kind, step.robot
+        stride._left = stride._count = step.count
         if step.kind is StepKind.CHANGE:
             stride._last = {id(place.node): place.status for place in places}
         return stride
@@ -73,8 +69,8 @@ class Stride:
         return self._passed(stepped) if self._kind is StepKind.TICK else ""
 
     def next_node(self, place: Place) -> str:
-        """A node was ticked: why to pause after it; empty if there is no reason to."""
-        if self._kind in (None, StepKind.TICK) or not fnmatchcase(place.robot.name, self._robot):
+        """A node was ticked that is watched: why to pause after it; empty if there is no reason to."""
+        if not fnmatchcase(place.robot.name, self._robot):
             return ""
         if self._kind is StepKind.NODE:
             return self._passed(f"stepped {_counted(self._count, 'node')} to after {place}")

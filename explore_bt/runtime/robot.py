@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import logging
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.errors import (
-    ComponentFailure,
-    PlanningFailure,
-    UserError,
-)
+from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
 from explore_bt.exploration import warm_up
 from explore_bt.interfaces import (
     Event,
@@ -313,19 +308,15 @@ class Robot:
             path=self.pilot.path,
             motion=self.pilot.motion,
             gate_reason=self.pilot.gate_reason,
-            nodes=self.node_states(ticks),
+            nodes=tuple(
+                NodeState(status_word(node.status), node.feedback_message, ticks[id(node)])
+                for node in self.tree.nodes
+            ),
             blackboard=dict(self.blackboard),
             score=self.scores.score(),
             true_pose=self.scores.true_pose,
             measured=measured,
             held_by=self.pilot.held_by,
-        )
-
-    def node_states(self, ticks: Mapping[int, int] = MappingProxyType({})) -> tuple[NodeState, ...]:
-        """Every node of the tree as it is now, in the middle of a tick too; ``ticks`` by the nodes' ids."""
-        return tuple(
-            NodeState(status_word(node.status), node.feedback_message, ticks.get(id(node), 0))
-            for node in self.tree.nodes
         )
 
     def tell(self, level: str, source: str, message: str) -> None:

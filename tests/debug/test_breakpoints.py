@@ -19,10 +19,21 @@ from explore_bt.errors import DebugError
 TWO = """
 format: explore-bt/1
 name: two
-params: {}
 robots:
-  ada: {start: [1 m, 1 m, 0 deg], driver: {use: sim2d, world: box.yaml}, slam: ground_truth, planner: grid_astar, controller: pursuit, tree: short}
-  bob: {start: [4 m, 2 m, 0 deg], driver: {use: sim2d, world: box.yaml}, slam: ground_truth, planner: grid_astar, controller: pursuit, tree: long}
+  ada:
+    start: [1 m, 1 m, 0 deg]
+    driver: {use: sim2d, world: box.yaml}
+    slam: ground_truth
+    planner: grid_astar
+    controller: pursuit
+    tree: short
+  bob:
+    start: [4 m, 2 m, 0 deg]
+    driver: {use: sim2d, world: box.yaml}
+    slam: ground_truth
+    planner: grid_astar
+    controller: pursuit
+    tree: long
 trees:
   short: {wait: {duration: 0.3 s}}
   long: {sequence: [wait: {duration: 0.6 s}, wait: {duration: 0.3 s}]}
@@ -113,6 +124,14 @@ def test_one_that_is_for_once_is_gone_after_its_first_stop(debug):
     assert run.session.state().breakpoints == ()
 
 
+def test_of_two_at_one_place_the_first_is_named_and_both_count(debug):
+    run = debug()
+    for _ in range(2):
+        run.do(AddBreakpoint(Breakpoint("first", once=True)))
+    assert run.go(Resume()).why.startswith("breakpoint 1: ")
+    assert run.session.state().breakpoints == ()
+
+
 def test_a_condition_sees_the_robot_and_the_node(debug):
     run = debug()
     condition = "$goal.pose.x > 3 and x > 2 and speed > 0.1 and status == 'running' and 'to (' in message"
@@ -136,7 +155,7 @@ def test_of_two_robots_the_one_that_is_meant_stops_the_run(debug):
     run = debug(head=TWO, tree="")
     with pytest.raises(DebugError, match='no node is called "short"'):
         run.do(AddBreakpoint(Breakpoint("short", robot="bob")))
-    with pytest.raises(DebugError, match='no robot "bib"; did you mean "bob"?'):
+    with pytest.raises(DebugError, match='no robot "bib"; did you mean "bob"'):
         run.do(AddBreakpoint(Breakpoint("wait", robot="bib")))
     run.do(AddBreakpoint(Breakpoint("*", status="success", robot="bob", condition="robot == 'bob'")))
     state = run.go(Resume())

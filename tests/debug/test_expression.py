@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import enum
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from explore_bt.debug import Expression, ExpressionError
@@ -30,6 +31,9 @@ class Trap:
         raise RuntimeError("not to be compared")
 
     __hash__ = None  # type: ignore[assignment]
+
+    def __bool__(self) -> bool:
+        raise RuntimeError("neither true nor false")
 
     @property
     def code(self) -> int:
@@ -150,6 +154,12 @@ def test_what_has_no_value_says_where_and_why(text, complaint):
     assert complaint in str(fault.value)
 
 
+@pytest.mark.parametrize("text", ["$trap", "not $trap", "$trap and true", "$grid"])
+def test_what_is_neither_true_nor_false_says_so(text):
+    with pytest.raises(ExpressionError, match="neither true nor false"):
+        Expression(text).holds(Seen())
+
+
 def test_a_long_list_is_not_searched():
     with pytest.raises(ExpressionError, match="cannot be searched"):
         Expression("3 in $long").value(Seen(long=range(10_001)))
@@ -157,12 +167,12 @@ def test_a_long_list_is_not_searched():
 
 @given(st.text(max_size=60) | st.text("$goalxy.()[]'\"+-*/%<>=! 0123andornt_,:{}", max_size=60))
 def test_whatever_is_typed_gives_a_value_or_a_clear_refusal(text):
-    try:
+    with contextlib.suppress(ExpressionError):  # any other exception would be a fault
         value(text)
-    except ExpressionError as refusal:
-        assert str(refusal)
 
 
+comparisons = st.sampled_from(["<", "<=", ">", ">=", "==", "!="])
+junctions = st.sampled_from(["and", "or"])
 numbers = st.sampled_from(["0", "1", "2.5", "7", "x", "y", "tick", "time"])
 arithmetic = st.recursive(
     numbers,
@@ -172,14 +182,9 @@ arithmetic = st.recursive(
     max_leaves=8,
 )
 logic = st.recursive(
-    st.builds(
-        lambda a, op, b: f"{a} {op} {b}",
-        arithmetic,
-        st.sampled_from(["<", "<=", ">", ">=", "==", "!="]),
-        numbers,
-    ),
+    st.builds(lambda a, op, b: f"{a} {op} {b}", arithmetic, comparisons, numbers),
     lambda inner: (
-        st.builds(lambda a, op, b: f"(({a}) {op} ({b}))", inner, st.sampled_from(["and", "or"]), inner)
+        st.builds(lambda a, op, b: f"(({a}) {op} ({b}))", inner, junctions, inner)
         | st.builds(lambda a: f"(not ({a}))", inner)
     ),
     max_leaves=4,
@@ -189,11 +194,8 @@ logic = st.recursive(
 @given(logic)
 def test_an_expression_means_what_python_means(text):
     names: dict[str, Any] = {"x": 2.0, "y": -1.0, "tick": 12, "time": 1.5}
-    try:
-        expression = Expression(text)
-    except ExpressionError as refusal:
-        assert "levels deep" in str(refusal) or "characters" in str(refusal)
-        return
+    assume(len(text) <= LONGEST)
+    expression = Expression(text)
     try:
         expected = eval(text, {"__builtins__": {}}, names)
     except ZeroDivisionError:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from explore_bt.debug import Force, Look, Release, Resume, Step
+from explore_bt.debug import AddBreakpoint, Breakpoint, Force, Look, Release, Resume, Step
 from explore_bt.errors import DebugError
 from explore_bt.recording import read_recording
 from explore_bt.types import Outcome
@@ -78,6 +78,17 @@ def test_once_means_the_first_of_the_nodes_that_is_ticked(debug):
     assert run.do(Force("fallback/*", "failure", once=True)) == 2
     assert run.finish().outcome is Outcome.EXPLORED
     assert any(status == "success" for status, _ in messages_of(run, "rescue"))
+
+
+def test_one_that_is_forced_anew_stays_forced_when_the_others_are_done(debug):
+    run = debug(tree=TREE)
+    run.do(Force("fallback/*", "failure", once=True))
+    run.do(Force("rescue", "success"))
+    run.do(AddBreakpoint(Breakpoint("rescue")))
+    run.go(Resume())
+    assert [(each.path, each.once) for each in run.session.state().forced] == [
+        ("main/fallback/rescue", False)
+    ]
 
 
 def test_until_released_every_tick_is_answered_and_one_event_tells_of_it(debug):

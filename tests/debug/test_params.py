@@ -68,7 +68,7 @@ def test_a_parameter_that_no_tree_uses_changes_nothing_and_says_so(debug):
         (
             "radius",
             "0.3 m",
-            "radius decides on option radius of driver sim2d: that is made when a run begins",
+            "radius decides on option radius of driver sim2d: that is made",
         ),
         ("budget", "9 s", "budget decides on limits.time_s"),
     ],

@@ -8,7 +8,7 @@ from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driv
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.testing.fake_robot import full_circle_scan, open_floor
-from explore_bt.types import Estimate, MotionLimits, Pose2, Twist2
+from explore_bt.types import Estimate, MotionLimits, Path, Pose2, Twist2
 
 FLOOR = open_floor()
 DT = 0.05
@@ -16,12 +16,19 @@ POST = np.array([[0.25, 0.0]])
 
 
 class StraightOn:
-    """Sets off gently, whatever comes."""
+    """Sets off gently, whatever comes; counts how often it was asked."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+
+    def follow(self, path: Path) -> None:
+        """Every path is as good."""
 
     def see(self, surroundings: Surroundings) -> None:
         """It does not look."""
 
     def step(self, *_: object) -> ControlOutput:
+        self.asked += 1
         return ControlOutput(Twist2(0.01, 0.0), ControlStatus.RUNNING)
 
 
@@ -67,3 +74,40 @@ def test_an_estimate_may_be_late_but_not_old(pilot: Pilot, age_s: float, fault: 
     pilot.step(estimate, replace(full_circle_scan(), stamp_s=now_s), now_s, DT)
     assert pilot.gate_reason == fault
     assert pilot.held_by is (HeldBy.SENSES if fault else HeldBy.NOTHING)
+
+
+def drive(pilot: Pilot, steps: range) -> None:
+    for i in steps:
+        estimate = show(pilot, DT * i, Pose2(0.0, 0.0, 0.0), np.zeros((0, 2)))
+        pilot.step(estimate, replace(full_circle_scan(), stamp_s=DT * i), DT * i, DT)
+
+
+def test_a_pause_brakes_to_rest_and_the_path_is_gone_on_with(pilot: Pilot) -> None:
+    path = Path(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]), np.array([1.0, 1.0]))
+    controller = cast(StraightOn, pilot._controller)
+    pilot.follow(path)
+    drive(pilot, range(40))
+    asked = controller.asked
+    speeds = []
+    for i in range(40, 100):
+        pilot.pause("held by the debugger", DT * i, DT)
+        speeds.append(pilot.motion.twist.linear_mps)
+    assert speeds == sorted(speeds, reverse=True)
+    assert pilot.is_at_rest
+    assert (pilot.path, pilot.output.status, controller.asked) == (path, ControlStatus.RUNNING, asked)
+    assert (pilot.gate_reason, pilot.held_by) == ("held by the debugger", HeldBy.DEBUGGER)
+    drive(pilot, range(100, 110))
+    assert (pilot.held_by, pilot.is_at_rest) == (HeldBy.NOTHING, False)
+
+
+def test_a_pause_does_not_count_as_being_blocked(pilot: Pilot) -> None:
+    for i in range(15):
+        show(pilot, 0.1 * i, Pose2(0.0, 0.0, 0.0), POST)
+    for time_s in (1.5, 1.6):
+        estimate = show(pilot, time_s, Pose2(0.0, 0.0, 0.0), POST)
+        pilot.step(estimate, replace(full_circle_scan(), stamp_s=time_s), time_s, DT)
+    before_s = pilot.blocked_s
+    for i in range(1, 200):
+        pilot.pause("held", 1.6 + DT * i, DT)
+    assert pilot.blocked_s == pytest.approx(before_s)
+    assert before_s > 0.0

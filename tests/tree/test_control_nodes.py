@@ -287,3 +287,31 @@ def test_in_any_tree_each_round_of_a_leaf_begins_once_and_ends_once(plan, ticks)
             assert leaf.begun == len(leaf.log) + (leaf in running)
     root.stop(Status.INVALID)
     assert all(node.status is Status.INVALID for node in root.iterate())
+
+
+@pytest.mark.parametrize(("duration_s", "rows"), [(1.0, "RRF"), (5.0, "RRR"), (0.2, "RFF")])
+def test_a_timeout_that_is_changed_while_its_child_runs_counts_from_the_same_begin(
+    duration_s: float, rows: str
+) -> None:
+    clock = ManualClock()
+    child = Scripted("R")
+    root = Timeout("node", child, 2.0, clock.now_s)
+    found = play(root, [child], 1)[0][0]
+    root.duration_s = duration_s
+    for time_s in (0.5, 1.5):
+        clock.wait_until(time_s)
+        found += play(root, [child], 1)[0][0] if root.status is Status.RUNNING else "F"
+    assert found == rows
+
+
+def test_retries_and_rounds_may_be_changed_between_ticks() -> None:
+    child = Scripted("RF")
+    retry = Retry("node", child, 1)
+    play(retry, [child], 1)
+    retry.retries = 3
+    assert [row[0] for row in play(retry, [child], 4)] == ["R", "R", "R", "F"]
+    child = Scripted("RS")
+    repeat = Repeat("node", child, 2)
+    play(repeat, [child], 1)
+    repeat.times = 3
+    assert [row[0] for row in play(repeat, [child], 3)] == ["R", "R", "S"]

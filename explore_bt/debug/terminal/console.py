@@ -26,6 +26,7 @@ from explore_bt.debug.commands import (
 )
 from explore_bt.debug.history import History
 from explore_bt.debug.session import DebugSession
+from explore_bt.debug.terminal.focus import Focus
 from explore_bt.debug.terminal.parsing import (
     breakpoint_of,
     force_of,
@@ -45,7 +46,6 @@ from explore_bt.debug.terminal.views import (
     where_lines,
 )
 from explore_bt.errors import DebugError
-from explore_bt.interfaces import NodeInfo, RobotSnapshot, RunInfo, TickSnapshot
 from explore_bt.mission.words import did_you_mean
 
 __all__ = ["Console", "Terminated"]
@@ -74,12 +74,11 @@ class Console:
     def __init__(self, session: DebugSession, history: History, reader: LineReader, screen: Screen) -> None:
         self._session = session
         self._history = history
+        self._focus = Focus(history)
         self._reader = reader
         self._screen = screen
         self._news = threading.Event()
         self._last = ""
-        self._robot = ""
-        self._past: int | None = None
         self._has_left = False
         self._interrupts = 0
         self._do: Mapping[str, Callable[[str], None]] = {
@@ -113,7 +112,12 @@ class Console:
         try:
             self._wait()
             while not self._has_left:
-                self._read_and_do()
+                try:
+                    self._read_and_do()
+                except Terminated:
+                    raise
+                except KeyboardInterrupt:  # whatever was being done or typed
+                    self._interrupted()
         except Terminated:
             pass
         finally:
@@ -126,11 +130,6 @@ class Console:
             line = self._reader.read(PROMPT)
         except EOFError:
             self._quit("")
-            return
-        except Terminated:
-            raise
-        except KeyboardInterrupt:
-            self._interrupted_at_prompt()
             return
         self._interrupts = 0
         self.do(line)
@@ -149,20 +148,15 @@ class Console:
         except DebugError as refusal:
             self._say(Text(str(refusal), "yellow"))
 
-    def _interrupted_at_prompt(self) -> None:
-        self._interrupts += 1
-        if self._interrupts > 1 or self._session.state().over:
-            self._quit("")
-        else:
-            self._say("", "Ctrl-C once more, or quit, stops the robots and saves the results")
-
     # --- the run -----------------------------------------------------------------------------------------
 
     def _go(self, command: Command[None]) -> None:
-        self._past = None
+        self._focus.return_to_present()
         if self._session.state().over:
             raise DebugError("the run is over; tree, print, where, map and back still show it")
         self._ask(command)
+        if isinstance(command, Resume) and self._reader.is_interactive:
+            self._say("running; Ctrl-C pauses, other commands are heard meanwhile")
         self._wait()
 
     def _wait(self) -> None:
@@ -177,26 +171,34 @@ class Console:
                 self._news.wait(_LOOK_S)
                 if (line := self._reader.typed_meanwhile()) is not None:
                     self.do(line)
-                    return
+                    if (state := self._session.state()).paused or state.over:
+                        return  # what was done has told so
             except Terminated:
                 raise
             except KeyboardInterrupt:
-                self._interrupt()
-        if not self._has_left:
-            self._say(*state_lines(self._session.state(), len(self._robots())))
+                self._interrupted()
+        self._interrupts = 0
+        if self._session.state().over and not self._focus.has_begun:
+            self._has_left = True  # it never began; the command tells why
+        elif not self._has_left:
+            self._say(*state_lines(self._session.state(), len(self._focus.robots)))
 
-    def _interrupt(self) -> None:
+    def _interrupted(self) -> None:
+        """Ctrl-C: pause; the second one in a row stops the robots."""
         self._interrupts += 1
-        if self._interrupts > 1:
+        state = self._session.state()
+        if self._interrupts > 1 or state.over:
             self._quit("")
-        else:
-            self._say("", "pausing; Ctrl-C once more stops the robots and saves the results")
+            return
+        if not state.paused:
             self._session.submit(Pause())
+        what = "" if state.paused else "pausing; "
+        self._say("", f"{what}Ctrl-C once more stops the robots and saves the results")
 
     def _pause(self, _: str) -> None:
         state = self._session.state()
         if state.paused or state.over:
-            self._say(*state_lines(state, len(self._robots())))
+            self._say(*state_lines(state, len(self._focus.robots)))
         else:
             self._ask(Pause())
             self._wait()
@@ -234,8 +236,11 @@ class Console:
     def _delete(self, rest: str) -> None:
         if not rest:
             raise DebugError("delete which? For example: delete 1, or delete all")
-        self._ask(RemoveBreakpoint(0 if rest == "all" else number_of(rest, "a breakpoint") or -1))
-        self._say("all breakpoints are deleted" if rest == "all" else f"breakpoint {rest} is deleted")
+        number = 0 if rest == "all" else number_of(rest, "a breakpoint")
+        if not number and rest != "all":
+            raise DebugError("breakpoints are numbered from 1; breaks lists them")
+        self._ask(RemoveBreakpoint(number))
+        self._say(f"breakpoint {number} is deleted" if number else "all breakpoints are deleted")
 
     def _enable(self, rest: str, *, enabled: bool) -> None:
         self._ask(EnableBreakpoint(number_of(rest, "a breakpoint"), enabled))
@@ -268,99 +273,71 @@ class Console:
     # --- looking -----------------------------------------------------------------------------------------
 
     def _print(self, rest: str) -> None:
+        board = self._view().blackboard
+        entry = rest.removeprefix("$")
         if not rest:
-            self._say(*board_lines(self._view().blackboard))
-        elif rest.isidentifier() and rest in self._view().blackboard:
-            self._say(value_text(self._view().blackboard[rest]))
-        elif rest.startswith("$") and rest[1:].isidentifier() and rest[1:] in self._view().blackboard:
-            self._say(value_text(self._view().blackboard[rest[1:]]))
-        elif self._past is not None:
+            self._say(*board_lines(board))
+        elif entry.isidentifier() and entry in board:
+            self._say(value_text(board[entry]))
+        elif not self._focus.is_present:
             raise DebugError("an expression has a value only now; look at entries here, or say now")
         else:
-            self._say(value_text(self._ask(Evaluate(rest, self._robot))))
+            self._say(value_text(self._ask(Evaluate(rest, self._focus.chosen))))
 
     def _tree(self, rest: str) -> None:
-        words = words_of(rest)
-        state = self._session.state()
-        here = state.path if self._past is None and state.robot in ("", self._view().robot) else ""
-        self._say(*tree_lines(self._infos(), self._view().nodes, words[0] if words else "", here))
+        pattern = next(iter(words_of(rest)), "")
+        infos = self._focus.infos(self._robot())
+        lines = list(tree_lines(infos, self._view().nodes, pattern, self._paused_at()))
+        if not lines:
+            hint = did_you_mean(pattern, {info.name for info in infos}, "nodes")
+            raise DebugError(f'no node is called "{pattern}"; {hint}')
+        self._say(*lines)
 
     def _where(self, _: str) -> None:
-        tick, robot = self._snapshot()
-        self._say(*where_lines(tick, robot, self._infos(), self._view().nodes))
+        tick, robot = self._focus.tick(), self._robot()
+        infos, nodes = self._focus.infos(robot), self._view().nodes
+        self._say(*where_lines(tick, self._focus.snapshot(robot), infos, nodes, self._paused_at()))
 
     def _map(self, _: str) -> None:
-        tick, robot = self._snapshot()
-        trail = self._history.trail(robot.robot, tick.index)
-        self._say(*map_lines(robot, trail, self._screen.width))
+        robot = self._robot()
+        self._say(*map_lines(self._focus.snapshot(robot), self._focus.trail(robot), self._screen.width))
 
     def _log(self, rest: str) -> None:
         for event in self._history.events(number_of(rest, "a number of events") if rest else 10):
-            robot = f"{event.robot} " if len(self._robots()) > 1 else ""
+            robot = f"{event.robot} " if len(self._focus.robots) > 1 else ""
             self._say(f"{event.stamp_s:8.2f} s  {robot}{event.source}: {event.message}")
 
     def _travel(self, rest: str, direction: int) -> None:
-        span = span_of(rest)
-        tick, _ = self._snapshot()
-        if span.seconds:
-            found = self._history.at_time(tick.stamp_s + direction * span.seconds)
-        else:
-            found = self._history.at(tick.index + direction * span.ticks)
-        assert found is not None  # the snapshot is one of them
-        newest, _ = self._newest()
-        self._past = None if found.index >= newest.index else found.index
-        if self._past is None:
-            self._say("this is the present")
-        else:
-            ago_s = newest.stamp_s - found.stamp_s
-            self._say(f"looking back {ago_s:.1f} s; now leads to the present")
+        ago_s = self._focus.travel(span_of(rest), direction)
+        is_present = self._focus.is_present
+        self._say(
+            "this is the present" if is_present else f"looking back {ago_s:.1f} s; now leads to the present"
+        )
         self._where("")
 
     def _now(self, _: str) -> None:
-        self._past = None
-        self._say(*state_lines(self._session.state(), len(self._robots())))
+        self._focus.return_to_present()
+        self._say(*state_lines(self._session.state(), len(self._focus.robots)))
 
     def _choose_robot(self, rest: str) -> None:
-        names = self._robots()
-        if rest and rest not in names:
-            raise DebugError(f'there is no robot "{rest}"; {did_you_mean(rest, names, "robots")}')
-        self._robot = rest or self._robot
-        for name in names:
-            self._say(f"{'> ' if name == self._shown_robot() else '  '}{name}")
+        if rest:
+            self._focus.choose(rest)
+        for name in self._focus.robots:
+            self._say(f"{'> ' if name == self._robot() else '  '}{name}")
 
-    def _robots(self) -> tuple[str, ...]:
-        return tuple(self._history.run.trees) if self._history.run else ()
+    def _robot(self) -> str:
+        return self._focus.robot(self._session.state().robot)
 
-    def _shown_robot(self) -> str:
-        return self._robot or self._session.state().robot or next(iter(self._robots()), "")
-
-    def _infos(self) -> tuple[NodeInfo, ...]:
-        return self._run_info().trees[self._shown_robot()]
-
-    def _run_info(self) -> RunInfo:
-        if self._history.run is None:
-            raise DebugError("the run has not begun yet")
-        return self._history.run
-
-    def _newest(self) -> tuple[TickSnapshot, RobotSnapshot]:
-        return self._of_robot(self._history.at(10**12))
-
-    def _snapshot(self) -> tuple[TickSnapshot, RobotSnapshot]:
-        """The tick that is looked at: an earlier one, or the last that was shown to observers."""
-        return self._newest() if self._past is None else self._of_robot(self._history.at(self._past))
-
-    def _of_robot(self, tick: TickSnapshot | None) -> tuple[TickSnapshot, RobotSnapshot]:
-        if tick is None:
-            raise DebugError("no tick has passed yet; step makes one")
-        name = self._shown_robot()
-        return tick, next(robot for robot in tick.robots if robot.robot == name)
+    def _paused_at(self) -> str:
+        """Path of the node the run is paused at, if that is what is looked at."""
+        state = self._session.state()
+        return state.path if self._focus.is_present and state.robot == self._robot() else ""
 
     def _view(self) -> View:
         """Tree and blackboard: as they were, or as they are in the middle of a tick."""
-        if self._past is None and not self._session.state().over:
-            return self._ask(Look(self._shown_robot()))
-        _, robot = self._snapshot()
-        return View(robot.robot, robot.nodes, robot.blackboard)
+        if self._focus.is_present and not self._session.state().over:
+            return self._ask(Look(self._robot()))
+        return self._focus.view(self._robot())
 
     # --- talking to the session and the person -----------------------------------------------------------
 

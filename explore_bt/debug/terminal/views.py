@@ -82,9 +82,21 @@ def state_lines(state: DebugState, robots: int) -> Iterator[Text]:
 
 
 def where_lines(
-    tick: TickSnapshot, robot: RobotSnapshot, infos: Sequence[NodeInfo], nodes: Sequence[NodeState]
+    tick: TickSnapshot,
+    robot: RobotSnapshot,
+    infos: Sequence[NodeInfo],
+    nodes: Sequence[NodeState],
+    at: str,
 ) -> Iterator[Text]:
-    """Time, pose, figures, and the running branch with its places in the mission."""
+    """Time, pose, figures, and the branch with its places in the mission.
+
+    Args:
+        tick: what is looked at.
+        robot: of that tick.
+        infos: of its tree; parents before children.
+        nodes: in the same order.
+        at: path of the node paused at, whose branch is shown; empty for the running branch.
+    """
     pose, score = robot.estimate.T_map_base, robot.score
     figures = [
         f"({pose.x:.2f}, {pose.y:.2f}) m, heading {math.degrees(pose.yaw_rad):.0f} deg",
@@ -97,15 +109,29 @@ def where_lines(
         yield Text(f"SLAM {robot.estimate.health}: {robot.estimate.reason}", "yellow")
     if robot.gate_reason:
         yield Text(f"braking: {robot.gate_reason}", "yellow")
-    running: set[int | None] = {None}
-    depth = 0
+    branch = _branch_to(infos, at) if at else _running(infos, nodes)
+    for depth, info in enumerate(branch):
+        state = nodes[info.id]
+        line = Text(f"{'  ' * depth}{info.name}")
+        line.append(f"  {info.place}", "grey50")
+        yield line.append(f"  {state.message}", "grey70") if state.message else line
+
+
+def _branch_to(infos: Sequence[NodeInfo], path: str) -> list[NodeInfo]:
+    """From the root to the node of that path."""
+    branch = [info for info in infos if info.path == path]
+    while (parent := branch[0].parent) is not None:
+        branch.insert(0, infos[parent])
+    return branch
+
+
+def _running(infos: Sequence[NodeInfo], nodes: Sequence[NodeState]) -> list[NodeInfo]:
+    """Running nodes below running nodes, from the root on."""
+    running: dict[int | None, NodeInfo | None] = {None: None}
     for info, state in zip(infos, nodes, strict=True):
         if state.status == "running" and info.parent in running:
-            running.add(info.id)
-            line = Text(f"{'  ' * depth}{info.name}")
-            line.append(f"  {info.place}", "grey50")
-            depth += 1
-            yield line.append(f"  {state.message}", "grey70") if state.message else line
+            running[info.id] = info
+    return [info for info in running.values() if info is not None]
 
 
 def map_lines(robot: RobotSnapshot, trail: Sequence[tuple[float, float]], width: int) -> list[Text]:
