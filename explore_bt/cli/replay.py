@@ -24,7 +24,12 @@ __all__ = ["find_recording", "replay"]
 
 @guarded
 def replay(
-    run: Annotated[Path, typer.Argument(metavar="RUN", help="A run's folder, or its recording.mcap.")],
+    run: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="RUN", help="A run's folder, or its recording.mcap; else the newest in runs/."
+        ),
+    ] = None,
     host: HostOption = "127.0.0.1",
     port: PortOption = 0,
     token: TokenOption = "",
@@ -46,12 +51,19 @@ def replay(
         wait_for_ctrl_c("Ctrl-C ends it")
 
 
-def find_recording(run: Path) -> Path:
-    """The recording that a person means: the file itself, or the one in a run's folder.
+def find_recording(run: Path | None) -> Path:
+    """The recording that a person means: the file itself, or the one in a run's folder, or the newest.
 
     Raises:
-        UserError: neither is there.
+        UserError: it is not there.
     """
+    if run is None:
+        every = sorted(Path("runs").glob("*/recording.mcap"), key=lambda path: path.stat().st_mtime)
+        if not every:
+            raise UserError(
+                "there is no recording in runs/ yet; name the folder of a run, or its recording.mcap"
+            )
+        return every[-1]
     path = run / "recording.mcap" if run.is_dir() else run
     if not path.is_file():
         where = f"{run} holds no recording.mcap" if run.is_dir() else f"there is no {run}"
