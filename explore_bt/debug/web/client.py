@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from functools import partial
 
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
@@ -27,20 +28,26 @@ class Share:
     is answered for ``d / share - d``.
     """
 
-    def __init__(self, share: float) -> None:
+    def __init__(
+        self,
+        share: float,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], Awaitable[None]] = asyncio.sleep,
+    ) -> None:
         self._rest = 1.0 / share - 1.0
+        self._clock, self._sleep = clock, sleep
         self._turn = asyncio.Lock()
         self._free_s = 0.0
 
     async def spend(self, work: Callable[[], str]) -> str:
         """Do a piece of work when its turn has come."""
         async with self._turn:
-            await asyncio.sleep(max(0.0, self._free_s - time.monotonic()))
-            began_s = time.monotonic()
+            await self._sleep(max(0.0, self._free_s - self._clock()))
+            began_s = self._clock()
             try:
                 return work()
             finally:
-                now_s = time.monotonic()
+                now_s = self._clock()
                 self._free_s = now_s + self._rest * (now_s - began_s)
 
 
@@ -86,10 +93,10 @@ class Client:
             return '{"id":null,"error":"not a request of this page"}'
         try:
             if isinstance(request, AskLook | AskCommand):
-                members = await self._desk.have_done(request)
+                answer = await self._desk.have_done(request)
             else:
-                asked = request  # of the kinds that are left
-                members = await self._share.spend(lambda: self._desk.answer(asked))
+                answer = partial(self._desk.answer, request)
+            members = await self._share.spend(answer)
         except UserError as fault:
             return f'{{"id":{request.id},"error":{json.dumps(str(fault))}}}'
         return f'{{"id":{request.id},{members}}}'

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
@@ -50,25 +50,29 @@ class Controls:
         """The debugger's state as JSON."""
         return json.dumps(asdict(self._session.state()), ensure_ascii=False)
 
-    async def do(self, told: Mapping[str, Any]) -> str:
-        """Have a command done; its answer as JSON.
+    async def do(self, told: Mapping[str, Any]) -> object:
+        """Have a command done; its answer.
 
         Raises:
             DebugError: it cannot be read, cannot be done, or nobody answers.
         """
-        return json.dumps(to_json(await self._answer(read_command(told))), ensure_ascii=False)
+        return await self._answer(read_command(told))
 
-    async def look(self, robot: str) -> list[LoggedMessage]:
-        """A robot's tree and blackboard as they are now, as messages of a recording.
+    async def look(self, robot: str) -> Callable[[], Iterator[LoggedMessage]]:
+        """A robot's tree and blackboard as they are now; what is returned makes messages of them.
 
         Raises:
             DebugError: no such robot, or nobody answers.
         """
         view = await self._answer(Look(robot))
         state = self._session.state()
-        nodes = {index: NodeNow(node.status, node.message) for index, node in enumerate(view.nodes)}
-        board = {name: to_json(value) for name, value in view.blackboard.items()}
-        return list(RobotState(state.tick, nodes, board).messages(view.robot, stamp_ns(state.stamp_s)))
+
+        def messages() -> Iterator[LoggedMessage]:
+            nodes = {index: NodeNow(node.status, node.message) for index, node in enumerate(view.nodes)}
+            board = {name: to_json(value) for name, value in view.blackboard.items()}
+            return RobotState(state.tick, nodes, board).messages(view.robot, stamp_ns(state.stamp_s))
+
+        return messages
 
     async def _answer(self, command: Command[Any]) -> Any:
         try:

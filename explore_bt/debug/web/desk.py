@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from explore_bt.debug.web.controls import Controls
 from explore_bt.debug.web.feed import RunFeed
 from explore_bt.debug.web.requests import AskCommand, AskFollow, AskLook, AskRun, AskState, AskTimeline
 from explore_bt.errors import DebugError
-from explore_bt.recording import LoggedMessage
+from explore_bt.recording import LoggedMessage, to_json
 
 __all__ = ["Desk"]
 
@@ -30,8 +30,8 @@ class Desk:
         self._feed = feed
         self._controls = controls
 
-    async def have_done(self, request: AskLook | AskCommand) -> str:
-        """The members of the answer to what the debugger has to do, as JSON text.
+    async def have_done(self, request: AskLook | AskCommand) -> Callable[[], str]:
+        """Have the debugger do something; what is returned makes the members of the answer.
 
         Raises:
             DebugError: it cannot be done.
@@ -39,8 +39,10 @@ class Desk:
         if self._controls is None:
             raise DebugError("this run is a recording: it can only be looked at")
         if isinstance(request, AskLook):
-            return f'"messages":{_list(await self._controls.look(request.robot))}'
-        return f'"answer":{await self._controls.do(request.command)}'
+            look = await self._controls.look(request.robot)
+            return lambda: f'"messages":{_list(look())}'
+        answer = await self._controls.do(request.command)
+        return lambda: f'"answer":{json.dumps(to_json(answer), ensure_ascii=False)}'
 
     def answer(self, request: AskRun | AskState | AskFollow | AskTimeline) -> str:
         """The members of the answer about the run, as JSON text."""

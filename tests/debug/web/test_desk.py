@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from explore_bt.debug.web import Desk, LiveSink
+from explore_bt.debug.web.client import Share
 from explore_bt.debug.web.controls import read_command
 from explore_bt.debug.web.requests import AskCommand, AskFollow, AskRun, AskState, AskTimeline, read_request
 from explore_bt.errors import DebugError
@@ -159,3 +160,25 @@ def test_a_run_that_goes_on_is_told_only_up_to_its_last_whole_tick(drive):
     assert answer["at_s"] == news["end_s"]
     assert "half a tick" not in str(answer["messages"])
     live.close(None)
+
+
+@given(st.lists(st.floats(0.001, 2.0), min_size=1, max_size=20), st.floats(0.05, 1.0))
+def test_all_answers_together_stay_below_their_share_of_the_time(works_s, share):
+    now_s = 0.0
+
+    async def sleep(seconds: float) -> None:
+        nonlocal now_s
+        now_s += seconds
+
+    def work(spent_s: float) -> str:
+        nonlocal now_s
+        now_s += spent_s
+        return f"worked {spent_s}"
+
+    async def spend() -> list[str]:
+        shared = Share(share, lambda: now_s, sleep)
+        every = [shared.spend(lambda spent_s=spent_s: work(spent_s)) for spent_s in works_s]
+        return await asyncio.gather(*every, shared.spend(lambda: ""))
+
+    assert asyncio.run(spend()) == [*(f"worked {spent_s}" for spent_s in works_s), ""]
+    assert sum(works_s) <= share * now_s * (1 + 1e-9)

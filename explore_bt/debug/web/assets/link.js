@@ -7,6 +7,9 @@ export class Link {
   #count = 0;
   #token = new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
 
+  /** Whether it has ever been admitted. */
+  wasOpen = false;
+
   /** `onNews(news)`, `onState(isOpen)`. */
   constructor(onNews, onState) {
     this.onNews = onNews;
@@ -26,7 +29,7 @@ export class Link {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     const query = this.#token ? `?token=${encodeURIComponent(this.#token)}` : "";
     this.#socket = new WebSocket(`${scheme}://${location.host}/socket${query}`);
-    this.#socket.onopen = () => this.onState(true);
+    this.#socket.onopen = () => { this.wasOpen = true; this.onState(true); };
     this.#socket.onmessage = (event) => this.#take(JSON.parse(event.data));
     this.#socket.onclose = () => {
       for (const { reject } of this.#waiting.values()) reject(new Error("the server has gone"));

@@ -58,6 +58,7 @@ class Page {
 
   #onLink(open) {
     if (open) { this.notice(""); if (this.player) this.#catchUp(); return; }
+    if (!this.link.wasOpen) return this.notice("The server does not admit this page: open the address that it printed, with all behind its #.", true);
     this.notice(this.debug.over ? "The run is over and explore-bt has ended; what is loaded stays." : "The connection is lost; trying again …", true);
   }
 
