@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import time
 from collections.abc import Awaitable, Callable
 from functools import partial
@@ -15,6 +16,8 @@ from explore_bt.debug.web.requests import AskCommand, AskLook, read_request
 from explore_bt.errors import UserError
 
 __all__ = ["Client", "Share"]
+
+_log = logging.getLogger("explore_bt")
 
 NEWS_PERIOD_S = 0.05
 PATIENCE_S = 20.0
@@ -99,6 +102,10 @@ class Client:
             members = await self._share.spend(answer)
         except UserError as fault:
             return f'{{"id":{request.id},"error":{json.dumps(str(fault))}}}'
+        except Exception as fault:  # of ours: it must not cost the page its socket
+            _log.exception("the page's question %s was not answered", request.ask)
+            words = f"explore-bt itself failed ({type(fault).__name__}); the log says where"
+            return f'{{"id":{request.id},"error":{json.dumps(words)}}}'
         return f'{{"id":{request.id},{members}}}'
 
     async def _tell_news(self) -> None:

@@ -240,3 +240,14 @@ def test_it_ends_at_once_with_clients_still_there(feed):
         assert name not in [thread.name for thread in threading.enumerate()]
         with pytest.raises(ConnectionClosed):
             asker.ask("run")
+
+
+def test_a_fault_of_ours_is_told_and_the_socket_lives(feed, caplog):
+    class Faulty(Desk):
+        def answer(self, request):
+            return super().answer(request) if request.ask == "run" else str(1 / 0)
+
+    with PageServer(Faulty(feed)) as server, asking(server) as asker:
+        assert "ZeroDivisionError" in asker.ask("state", at_s=1.0)["error"]
+        assert "run" in asker.ask("run")
+    assert "question state was not answered" in caplog.text
