@@ -72,7 +72,7 @@ def debug(
     sink: SinkOption = None,
     verbose: VerboseOption = False,
 ) -> None:
-    """Drive a mission under a debugger: pause, step, break, force, look back.
+    """Run a mission under a debugger: step, break, look back.
 
     It stands still before the first tick. On the page, Ctrl-C stops the robot safely, and once the
     mission is over ends the page. In the terminal, type help; Ctrl-C pauses, a second one stops the

@@ -156,7 +156,8 @@ class Expression:
             raise self._fault(node, f'there is no name "{name}"', f"{hint}; an entry is written ${name}")
 
     def _fault(self, node: ast.AST, message: str, hint: str = "") -> ExpressionError:
-        column = getattr(node, "col_offset", 0) + 1
+        before = self.text.encode()[: getattr(node, "col_offset", 0)]  # Python counts bytes
+        column = len(before.decode()) + 1
         return ExpressionError(f"column {column}: {message}{f'; {hint}' if hint else ''}")
 
     # --- reckoning -------------------------------------------------------------------------------------

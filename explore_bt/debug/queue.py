@@ -47,8 +47,10 @@ class CommandQueue:
 
     def serve(self, do: Callable[[Command[Any]], object], patience_s: float = 0.0) -> bool:
         """Have ``do`` answer the next command, waiting so long for one; whether there was one."""
+        waits = patience_s > 0.0
+        if not waits and self._commands.empty():  # as almost always
+            return False
         try:
-            waits = patience_s > 0.0
             command, future = self._commands.get(waits, patience_s if waits else None)
         except Empty:
             return False

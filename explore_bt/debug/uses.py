@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 
+from explore_bt.interfaces import PluginOptions
 from explore_bt.mission import Condition, Mission, NodeSpec, RobotSpec
 
 __all__ = ["Use", "uses"]
@@ -58,13 +59,13 @@ def _of_robot(before: RobotSpec, after: RobotSpec) -> Iterator[Use]:
         if old.name != new.name:
             yield Use(f"the {kind} of robot {before.name}", before.name)
         elif old.options != new.options:
-            names = [name for name in type(old.options).model_fields if _differ(old, new, name)]
+            names = _different(old.options, new.options)
             yield Use(f"option {', '.join(names)} of {kind} {old.name}", before.name)
     yield from _of_node(before.name, before.tree, after.tree)
 
 
-def _differ(old: object, new: object, name: str) -> bool:
-    return bool(getattr(old.options, name) != getattr(new.options, name))  # type: ignore[attr-defined]  # both are PluginChoice
+def _different(before: PluginOptions, after: PluginOptions) -> list[str]:
+    return [name for name in type(before).model_fields if getattr(before, name) != getattr(after, name)]
 
 
 def _of_node(robot: str, before: NodeSpec, after: NodeSpec) -> Iterator[Use]:

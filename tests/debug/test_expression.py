@@ -115,6 +115,7 @@ def test_an_expression_is_worth_what_one_reads(text, expected):
         ("~x", "column 1: ~ is not allowed; write not"),
         ("x >", "column 4: not an expression"),
         ("tcik > 3", 'column 1: there is no name "tcik"; did you mean "tick"?; an entry is written $tcik'),
+        ("'°äµ' == print(1)", "column 10: a call is not allowed"),
         ("x == 3j", "column 6: is not allowed"),
         ("b'a' == x", "column 1: is not allowed"),
         ("x\n> 3", "no line break"),
