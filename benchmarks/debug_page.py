@@ -76,7 +76,10 @@ def seeks(path: Path) -> None:
         with chromium() as page:
             page.goto(server.url)
             page.evaluate(UNTIL_READY)
+            spent_s = busy(page)
+            before_s = next(spent_s)
             row("in Chromium, until drawn", [page.evaluate(SEEK, at_s) for at_s in times_s])
+            print(f"\nCPU of the page's own thread: {1e3 * (next(spent_s) - before_s) / SEEKS:.1f} ms a seek")
 
 
 UNTIL_READY = """new Promise((done) => {
@@ -89,6 +92,15 @@ SEEK = """async (time) => {
   await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
   return performance.now() - begun;
 }"""
+
+
+def busy(page: Any) -> Iterator[float]:
+    """CPU time that the page's main thread has spent, seconds, as often as it is asked."""
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+    while True:
+        metrics = session.send("Performance.getMetrics")["metrics"]
+        yield next(each["value"] for each in metrics if each["name"] == "TaskDuration")
 
 
 def in_python(feed: RunFeed, at_s: float) -> None:
