@@ -35,9 +35,9 @@ def replay(
     token: TokenOption = "",
     open_: OpenOption = False,
 ) -> None:
-    """Look at a run that is over, at any moment of it: tree, map and timeline on one page.
+    """Look at any moment of a run that is over, in a browser.
 
-    A recording that was cut off is shown as far as it goes. Ctrl-C ends it.
+    Tree, map and timeline are on one page. A recording that was cut off is shown as far as it goes. Ctrl-C ends it.
     """
     from explore_bt.debug.web import Desk, PageServer, RunFeed
     from explore_bt.recording import read_recording

@@ -19,7 +19,7 @@ __all__ = ["Client", "Share"]
 
 _log = logging.getLogger("explore_bt")
 
-NEWS_PERIOD_S = 0.05
+NEWS_PERIOD_S = 0.1
 PATIENCE_S = 20.0
 _FAULTS_BEFORE_PARTING = 50
 

@@ -5,6 +5,7 @@ import { after } from "./story.js";
 import { clock } from "./words.js";
 
 const TOP = 18, CURVES = 44, LANE = 13, AXIS = 18;
+const GROWS_EVERY_MS = 400;  // while a run goes on: all of it is drawn anew then
 const LEVELS = { warning: "warn", error: "failure" };
 
 /** Draws one robot's story; `onSeek(time)` while it is dragged. */
@@ -16,7 +17,7 @@ export class TimelineView {
   #scene = null;
   #window = null;
   #dragging = false;
-  #drawn = { key: "", canvas: document.createElement("canvas") };
+  #drawn = { key: "", at: -Infinity, end: 0, count: 0, later: 0, canvas: document.createElement("canvas") };
 
   constructor(canvas, onSeek) {
     this.#canvas = canvas;
@@ -32,6 +33,12 @@ export class TimelineView {
 
   /** `scene`: begin, end, time, robot {name, story, nodes, parents}, picked node, lines, count of the story. */
   show(scene) {
+    const drawn = this.#drawn, wait = drawn.at + GROWS_EVERY_MS - performance.now();
+    clearTimeout(drawn.later);
+    if (wait > 0 && scene.count !== drawn.count && scene.robot.name === this.#scene?.robot.name) {
+      drawn.later = setTimeout(() => this.show(scene), wait);
+      scene = { ...scene, end: drawn.end, count: drawn.count, time: Math.min(scene.time, drawn.end) };
+    }
     this.#scene = scene;
     this.draw();
   }
@@ -86,7 +93,7 @@ export class TimelineView {
   #drawBehind(key, width, height) {
     const { canvas } = this.#drawn;
     Object.assign(canvas, { width: this.#canvas.width, height: this.#canvas.height });
-    this.#drawn.key = key;
+    Object.assign(this.#drawn, { key, at: performance.now(), end: this.#scene.end, count: this.#scene.count });
     const pen = canvas.getContext("2d");
     pen.scale(canvas.width / width, canvas.height / height);
     pen.font = "11px system-ui, sans-serif";
