@@ -19,7 +19,7 @@ import numpy as np
 from machine import ROOT, describe_machine
 
 from explore_bt.debug import AddBreakpoint, Breakpoint, DebugSession, History
-from explore_bt.interfaces import Sink
+from explore_bt.interfaces import Sink, TickSnapshot
 from explore_bt.mission import load_mission
 from explore_bt.plugin import load_plugins
 from explore_bt.recording import McapRecorder
@@ -34,10 +34,11 @@ WATCHED = (
 
 
 class _Times:
-    """CPU seconds of every tick, and of deciding in it."""
+    """CPU seconds of every tick, of deciding in it, and of what the debugger does between two ticks."""
 
     def __init__(self) -> None:
         self.ticks: list[float] = []
+        self.own: list[float] = []
         self.decisions: list[float] = []
         self._last = 0.0
 
@@ -96,14 +97,31 @@ class Attached(DebugSession):
 
     def on_period(self) -> None:
         """A tick has passed."""
+        begun = time.thread_time()
         super().on_period()
+        self.times.own.append(time.thread_time() - begun)
         self.times.on_period()
+
+
+class TimedHistory(History):
+    """Counts its own CPU time too."""
+
+    def __init__(self, times: _Times) -> None:
+        super().__init__()
+        self._times = times
+
+    def on_tick(self, tick: TickSnapshot) -> None:
+        """Keep it."""
+        begun = time.thread_time()
+        super().on_tick(tick)
+        self._times.own[-1] += time.thread_time() - begun
 
 
 CASES: dict[str, Callable[[], Alone | Attached]] = {
     "no debugger": Alone,
     "attached, nothing to watch": Attached,
     "attached, 3 conditional breakpoints": lambda: Attached(watches=True),
+    "no debugger, once more": Alone,  # how far two equal cases differ on this machine
 }
 
 
@@ -119,14 +137,16 @@ def main() -> None:
         for name, make in CASES.items():
             found[name].append(_drive(arguments.mission, arguments.seed, make()))
     print(f"{arguments.mission.stem}, {arguments.runs} runs each; {describe_machine()}\n")
-    print("| | tick, median | sum of ticks | deciding, median | sum of deciding |\n|---|---|---|---|---|")
+    print("| | tick, median | sum of ticks | deciding, median | sum of deciding | commands and history |")
+    print("|---|---|---|---|---|---|")
     base = _sums(found["no debugger"])
     for name, runs in found.items():
         ticks, decisions = _least(runs, "ticks"), _least(runs, "decisions")
         sums = _sums(runs)
         print(
             f"| {name} | {1e3 * median(ticks):.2f} ms | {sums[0]:.2f} s ({_more(sums[0], base[0])}) "
-            f"| {1e6 * median(decisions):.0f} µs | {sums[1]:.2f} s ({_more(sums[1], base[1])}) |"
+            f"| {1e6 * median(decisions):.0f} µs | {sums[1]:.2f} s ({_more(sums[1], base[1])}) "
+            f"| {_own(runs)} |"
         )
 
 
@@ -135,7 +155,7 @@ def _drive(path: Path, seed: int, attendant: Alone | Attached) -> _Times:
     mission = load_mission(path, registry)
     sinks: list[Sink] = [McapRecorder(McapRecorder.Options())]
     if isinstance(attendant, Attached):
-        sinks.append(History())
+        sinks.append(TimedHistory(attendant.times))
     with tempfile.TemporaryDirectory() as name:
         run_mission(
             mission,
@@ -156,6 +176,10 @@ def _least(runs: list[_Times], what: str) -> list[float]:
 
 def _sums(runs: list[_Times]) -> tuple[float, float]:
     return sum(_least(runs, "ticks")), sum(_least(runs, "decisions"))
+
+
+def _own(runs: list[_Times]) -> str:
+    return f"{1e6 * median(_least(runs, 'own')):.0f} µs" if runs[0].own else "–"
 
 
 def _more(value: float, base: float) -> str:

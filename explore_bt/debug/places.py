@@ -16,6 +16,8 @@ from explore_bt.tree import status_word
 
 __all__ = ["Place", "Places"]
 
+LONGEST = 2000
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Place:
@@ -69,6 +71,8 @@ class Places:
         Raises:
             DebugError: none.
         """
+        if len(path) + len(robot) > LONGEST:
+            raise DebugError(f"a path of {len(path)} characters; at most {LONGEST}")
         names = {name for name in self.robots if fnmatchcase(name, robot)}
         if not names:
             self.robot(robot)
@@ -85,4 +89,4 @@ class Places:
 
 def _is_meant(pattern: str, path: str) -> bool:
     whole = f"/{path}"  # so that a pattern begins where a name begins
-    return whole.endswith(f"/{pattern}") or fnmatchcase(path, pattern) or fnmatchcase(whole, f"*/{pattern}")
+    return whole.endswith(f"/{pattern}") or fnmatchcase(whole, f"*/{pattern}")

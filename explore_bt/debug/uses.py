@@ -36,7 +36,9 @@ class Use:
 def uses(before: Mission, after: Mission) -> list[Use]:
     """Everything but the parameter itself that is not the same in both."""
     found = [
-        Use(f"limits.{field.name}")
+        Use(
+            f"limits.{field.name.rpartition('_')[0]}"
+        )  # the field carries the unit, the mission's key does not
         for field in fields(before.limits)
         if getattr(before.limits, field.name) != getattr(after.limits, field.name)
     ]

@@ -21,7 +21,7 @@ class Attendant:
         """The robots are set up, nothing has moved yet."""
 
     def on_period(self) -> None:
-        """Ten times a second of mission time: between two ticks, before the first and after the last."""
+        """At the rate of the trees: between two ticks, before the first and after the last."""
 
     def before_tick(self) -> None:
         """The trees are about to be ticked."""

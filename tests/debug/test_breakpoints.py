@@ -177,6 +177,7 @@ def test_of_two_robots_the_one_that_is_meant_stops_the_run(debug):
         (Breakpoint("first", condition="$gaol == 3"), 'nothing writes $gaol; did you mean "goal"?'),
         (Breakpoint("first", condition="1 +"), "column 4: not an expression"),
         (Breakpoint(7), "are texts"),
+        (Breakpoint("*a" * 5000), "10000 characters; at most 2000"),
         (Breakpoint("[*"), "no node is called"),
     ],
 )

@@ -70,7 +70,7 @@ def test_a_parameter_that_no_tree_uses_changes_nothing_and_says_so(debug):
             "0.3 m",
             "radius decides on option radius of driver sim2d: that is made",
         ),
-        ("budget", "9 s", "budget decides on limits.time_s"),
+        ("budget", "9 s", "budget decides on limits.time: "),
     ],
 )
 def test_what_set_would_not_take_or_what_cannot_change_is_refused_as_a_whole(debug, name, text, refusal):
