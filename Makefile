@@ -3,10 +3,13 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq
 
-.PHONY: demo test lint types docs bench clean
+.PHONY: demo replay test lint types docs bench clean
 
 demo: .venv/run.done       ## explore a flat nobody has told the robot about
 	@$(BIN)/explore-bt run missions/01_apartment.yaml
+
+replay: .venv/run.done     ## any moment of the newest run, in a browser
+	@$(BIN)/explore-bt replay --open
 
 test: .venv/dev.done       ## every test, lint and type check included
 	@$(BIN)/python -m pytest -n 2

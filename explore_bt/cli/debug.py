@@ -28,9 +28,18 @@ from explore_bt.cli.driving import (
 from explore_bt.cli.groot import GrootHostOption, GrootOption, GrootPortOption, groot_sinks
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
+from explore_bt.cli.page_options import (
+    HostOption,
+    OpenOption,
+    PageOptions,
+    PortOption,
+    TokenOption,
+    show_page,
+    wait_for_ctrl_c,
+)
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
-from explore_bt.errors import UserError
+from explore_bt.cli.stopping import stopping_by_signal
 
 if TYPE_CHECKING:
     from explore_bt.debug import DebugSession
@@ -42,6 +51,9 @@ if TYPE_CHECKING:
 
 __all__ = ["debug"]
 
+PAGE_SHARE = 0.2
+"""Of one core that answering pages may take from the robot's ticks."""
+
 
 @guarded
 def debug(
@@ -52,6 +64,13 @@ def debug(
     terminal: Annotated[
         bool, typer.Option("--terminal", help="Commands in the terminal; also over ssh, or from a pipe.")
     ] = False,
+    host: HostOption = "127.0.0.1",
+    port: PortOption = 0,
+    token: TokenOption = "",
+    open_: OpenOption = False,
+    run_on: Annotated[
+        bool, typer.Option("--run-on", help="Begin at once; else the page has to say so.")
+    ] = False,
     sink: SinkOption = None,
     groot: GrootOption = False,
     groot_port: GrootPortOption = 1667,
@@ -60,42 +79,73 @@ def debug(
 ) -> None:
     """Run a mission under a debugger: step, break, look back.
 
-    It stands still before the first tick; type help. Ctrl-C pauses, a second one stops the robot
-    safely. Results and exit codes are those of explore-bt run.
+    It stands still before the first tick. On the page, Ctrl-C stops the robot safely, and once the
+    mission is over ends the page. In the terminal, type help; Ctrl-C pauses, a second one stops the
+    robot safely. Results and exit codes are those of explore-bt run.
     """
-    if not terminal:
-        raise UserError("explore-bt debug has no page yet; add --terminal")
     checked, registry = load_checked(mission, set_)
     folder = new_run_folder(out, checked.path.stem)
-    typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
-    session = new_session(checked, registry, set_ or ())
+    session = new_session(checked, registry, set_ or (), paused=not run_on)
     sinks = [
         *make_sinks(registry, sink or ()),
         *groot_sinks(groot, checked, session, groot_host, groot_port),
     ]
     with run_log(folder / "run.log", verbose=verbose):
-        result = _in_terminal(checked, registry, folder, seed, session, sinks)
-    show_result(result, folder)
+        if terminal:
+            typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
+            result = _in_terminal(session, checked, registry, folder, seed, sinks)
+            show_result(result, folder)
+        else:
+            page = PageOptions(host, port, token, open_)
+            result = _on_page(session, checked, registry, folder, seed, sinks, page)
     raise typer.Exit(exit_code(result.outcome))
 
 
-def new_session(mission: Mission, registry: Registry, settings: Sequence[str]) -> DebugSession:
-    """A session that stands still before the first tick and can change parameters."""
+def new_session(
+    mission: Mission, registry: Registry, settings: Sequence[str], *, paused: bool = True
+) -> DebugSession:
+    """A session that stands still before the first tick, if ``paused``, and can change parameters."""
     from explore_bt.debug import DebugSession, Params
     from explore_bt.mission import load_mission
 
     def load(again: Sequence[str]) -> Mission:
         return load_mission(mission.path, registry, again)
 
-    return DebugSession(Params(mission, load, settings), paused=True)
+    return DebugSession(Params(mission, load, settings), paused=paused)
 
 
-def _in_terminal(
+def _on_page(
+    session: DebugSession,
     mission: Mission,
     registry: Registry,
     folder: Path,
     seed: int,
+    more_sinks: Sequence[Sink],
+    page: PageOptions,
+) -> Result:
+    from explore_bt.debug.web import Controls, Desk, LiveSink, PageServer
+    from explore_bt.runtime import StopFlag
+
+    live, stop = LiveSink(), StopFlag()
+    sinks = [*more_sinks, live]
+    desk = Desk(live.feed, Controls(session))
+    with PageServer(desk, host=page.host, port=page.port, token=page.token, share=PAGE_SHARE) as server:
+        show_page(server, open_it=page.open_it)
+        typer.echo(f"{mission.path}, seed {seed}: {GETTING_READY}")
+        with stopping_by_signal(stop):
+            result = drive(mission, registry, folder, seed, sinks, stop, session)
+        show_result(result, folder)
+        if "SIGTERM" not in stop.reason:
+            wait_for_ctrl_c("the page stays to look at; Ctrl-C ends it")
+    return result
+
+
+def _in_terminal(
     session: DebugSession,
+    mission: Mission,
+    registry: Registry,
+    folder: Path,
+    seed: int,
     more_sinks: Sequence[Sink],
 ) -> Result:
     from rich.console import Console as Screen

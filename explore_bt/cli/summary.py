@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,8 @@ if TYPE_CHECKING:
 __all__ = ["summary_lines"]
 
 _MOST = 3
-_FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", "recording.mcap"), ("log", "run.log"))
+_RECORDING = "recording.mcap"
+_FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", _RECORDING), ("log", "run.log"))
 
 
 def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:
@@ -22,6 +24,9 @@ def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:
     lines += [("reason", result.reason)] if result.reason else []
     lines += [("left open", sentence) for sentence in _first(result.left_open)]
     lines += [(label, str(path)) for label, name in _FILES for path in _files(folder, name)]
+    lines += (
+        [("replay", f"explore-bt replay {shlex.quote(str(folder))}")] if _files(folder, _RECORDING) else []
+    )
     return lines
 
 

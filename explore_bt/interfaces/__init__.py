@@ -10,7 +10,15 @@ from explore_bt.interfaces.plugin import API_VERSION, Plugin, PluginOptions, Rob
 from explore_bt.interfaces.services import MapMemory, MapView, Pilot, RobotServices
 from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.slam import Slam
-from explore_bt.interfaces.snapshot import Event, NodeInfo, NodeState, RobotSnapshot, RunInfo, TickSnapshot
+from explore_bt.interfaces.snapshot import (
+    Event,
+    NodeInfo,
+    NodeState,
+    PortInfo,
+    RobotSnapshot,
+    RunInfo,
+    TickSnapshot,
+)
 from explore_bt.interfaces.surroundings import Surroundings
 from explore_bt.interfaces.truth import GroundTruth
 
@@ -33,6 +41,7 @@ __all__ = [
     "Playback",
     "Plugin",
     "PluginOptions",
+    "PortInfo",
     "Recorded",
     "RobotContext",
     "RobotProduct",

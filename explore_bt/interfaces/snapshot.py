@@ -9,7 +9,21 @@ from pathlib import Path as FilePath
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.types import Estimate, Measurement, MotionState, OccupancyGrid, Path, Pose2, Scan2D, Score
 
-__all__ = ["Event", "NodeInfo", "NodeState", "RobotSnapshot", "RunInfo", "TickSnapshot"]
+__all__ = ["Event", "NodeInfo", "NodeState", "PortInfo", "RobotSnapshot", "RunInfo", "TickSnapshot"]
+
+
+@dataclass(frozen=True, slots=True)
+class PortInfo:
+    """A port of a leaf as it is wired.
+
+    Attributes:
+        bound: ``$entry`` for a blackboard entry, else the constant as a mission would write it.
+        is_output: whether the leaf writes it.
+    """
+
+    name: str
+    bound: str
+    is_output: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +43,7 @@ class NodeInfo:
     type: str
     parent: int | None
     place: str
+    ports: tuple[PortInfo, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +61,11 @@ class NodeState:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunInfo:
-    """All that is known when a run begins."""
+    """All that is known when a run begins.
+
+    Attributes:
+        sources: file as ``NodeInfo.place`` names it -> its text.
+    """
 
     mission: str
     mission_text: str
@@ -56,6 +75,7 @@ class RunInfo:
     folder: FilePath
     trees: Mapping[str, tuple[NodeInfo, ...]]
     footprint_radius_m: Mapping[str, float]
+    sources: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
 
 from py_trees.behaviour import Behaviour
 
-from explore_bt.interfaces import NodeInfo, RobotServices
+from explore_bt.interfaces import NodeInfo, PortInfo, RobotServices
+from explore_bt.mission.bounds import dimension_of
 from explore_bt.mission.nodes import Condition, NodeSpec
 from explore_bt.mission.source import Place
+from explore_bt.mission.words import quantity, show
 from explore_bt.tree import (
     Blackboard,
     EntryCondition,
@@ -19,6 +21,8 @@ from explore_bt.tree import (
     ForceSuccess,
     Guard,
     Invert,
+    Key,
+    Leaf,
     OnFailure,
     Parallel,
     ReactiveFallback,
@@ -78,10 +82,20 @@ def build_tree(spec: NodeSpec, robot: RobotServices, blackboard: Blackboard) -> 
             builder.known[id(node)].type,
             ids[id(node.parent)] if node.parent is not None else None,
             str(builder.known[id(node)].place),
+            _ports(node) if isinstance(node, Leaf) else (),
         )
         for index, node in enumerate(nodes)
     )
     return BuiltTree(root, nodes, infos)
+
+
+def _ports(leaf: Leaf) -> tuple[PortInfo, ...]:
+    def told(bound: object, type_: Any) -> str:
+        return show(bound) if isinstance(bound, Key) else quantity(bound, dimension_of(type_))
+
+    inputs = (PortInfo(name, told(leaf.bindings[name], p.type), False) for name, p in leaf.inputs.items())
+    outputs = (PortInfo(name, told(leaf.bindings[name], p.type), True) for name, p in leaf.outputs.items())
+    return (*inputs, *outputs)
 
 
 def _depth_first(node: Behaviour) -> list[Behaviour]:

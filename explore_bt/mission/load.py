@@ -132,6 +132,7 @@ class _Loader:
             limits=limits,
             included=tuple(self._text.included),
             declared=declared,
+            sources={each.name: each.text for each in (self._text.source, *self._text.included.values())},
         )
 
     def _name(self, path: Path) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -63,6 +63,7 @@ class Mission:
             relative to the mission's folder): the same wherever the mission lies.
         params: parameter -> value in SI; None where it is not given.
         declared: the parameters' declarations: type, bounds, doc.
+        sources: file as its places name it -> its text, for the mission and what it includes.
         control_rate_hz: a whole multiple of ``tree_rate_hz``.
     """
 
@@ -78,3 +79,4 @@ class Mission:
     limits: LimitsSpec
     included: tuple[Path, ...] = ()
     declared: tuple[Param, ...] = ()
+    sources: Mapping[str, str] = field(default_factory=dict)

@@ -1,10 +1,20 @@
 """The recording of a run: one MCAP file that outlives a crash and opens in Foxglove as it is."""
 
 from explore_bt.recording.btlog import STATUS_BYTES, btlog, transition_record
-from explore_bt.recording.foxglove import decode_grid
-from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions
+from explore_bt.recording.foxglove import decode_grid, log_message, stamp_ns
+from explore_bt.recording.mcap_sink import (
+    McapRecorder,
+    McapRecorderOptions,
+    periods_of,
+    result_message,
+    run_message,
+)
 from explore_bt.recording.measurements_reader import decode_measurements
+from explore_bt.recording.message_log import LoggedMessage, MessageLog
 from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
+from explore_bt.recording.robot_track import Periods, RobotTrack
+from explore_bt.recording.run_state import NodeNow, RobotState, followed_topics, state_at
+from explore_bt.recording.timeline import Timeline
 from explore_bt.recording.topics import TOPICS, Topic
 from explore_bt.recording.values import to_json
 
@@ -12,16 +22,30 @@ __all__ = [
     "SINKS",
     "STATUS_BYTES",
     "TOPICS",
+    "LoggedMessage",
     "McapRecorder",
     "McapRecorderOptions",
+    "MessageLog",
+    "NodeNow",
+    "Periods",
     "RecordedMessage",
     "Recording",
     "RecordingError",
+    "RobotState",
+    "RobotTrack",
+    "Timeline",
     "Topic",
     "btlog",
     "decode_grid",
     "decode_measurements",
+    "followed_topics",
+    "log_message",
+    "periods_of",
     "read_recording",
+    "result_message",
+    "run_message",
+    "stamp_ns",
+    "state_at",
     "to_json",
     "transition_record",
 ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -16,6 +16,7 @@ from mcap.records import Channel, Chunk, Header, Message
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from explore_bt.errors import LogError
+from explore_bt.recording.message_log import MessageLog
 from explore_bt.recording.topics import PROFILE
 
 __all__ = ["RecordedMessage", "Recording", "RecordingError", "read_recording"]
@@ -86,14 +87,25 @@ class Recording:
         for chunk in self._chunks:
             if chunk.message_end_time * 1e-9 < start_s or chunk.message_start_time * 1e-9 > end_s:
                 continue
-            for record in breakup_chunk(chunk):
-                if not isinstance(record, Message):
-                    continue
-                name, stamp_s = self._channels.get(record.channel_id), record.log_time * 1e-9
-                if name is None:  # declared in a chunk that was lost
-                    continue
+            for name, record in self._records(chunk):
+                stamp_s = record.log_time * 1e-9
                 if topic in (None, name) and start_s <= stamp_s <= end_s:
                     yield RecordedMessage(name, stamp_s, json.loads(record.data))
+
+    def log(self, topics: Collection[str]) -> MessageLog:
+        """The messages of these topics, to be found by time again and again."""
+        log = MessageLog()
+        for chunk in self._chunks:
+            for name, record in self._records(chunk):
+                if name in topics:
+                    log.add(name, record.log_time, record.data.decode())
+        return log
+
+    def _records(self, chunk: Chunk) -> Iterator[tuple[str, Message]]:
+        """Messages with their topics, save those whose topic was declared in a chunk that was lost."""
+        for record in breakup_chunk(chunk):
+            if isinstance(record, Message) and record.channel_id in self._channels:
+                yield self._channels[record.channel_id], record
 
 
 def read_recording(path: Path) -> Recording:

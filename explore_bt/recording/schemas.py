@@ -53,7 +53,13 @@ _CLOUD = _object(
 )
 _NODE_STATE = _object(id=_INTEGER, status=_TEXT, message=_TEXT)
 _NODE = _object(
-    id=_INTEGER, path=_TEXT, name=_TEXT, type=_TEXT, parent={"type": ["integer", "null"]}, place=_TEXT
+    id=_INTEGER,
+    path=_TEXT,
+    name=_TEXT,
+    type=_TEXT,
+    parent={"type": ["integer", "null"]},
+    place=_TEXT,
+    ports=_array(_object(name=_TEXT, bound=_TEXT, is_output=_FLAG)),
 )
 
 _SCHEMAS: Mapping[str, _Schema] = {
@@ -92,6 +98,7 @@ _SCHEMAS: Mapping[str, _Schema] = {
         seed=_INTEGER,
         version=_TEXT,
         footprint_radius_m=_ANY,
+        sources={"type": "object", "additionalProperties": _TEXT},
         trees={"type": "object", "additionalProperties": _array(_NODE)},
     ),
     "explore_bt.Tree": _object(timestamp=_TIME, tick=_INTEGER, key_frame=_FLAG, nodes=_array(_NODE_STATE)),

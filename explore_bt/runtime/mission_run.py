@@ -97,6 +97,7 @@ def _run_info(mission: Mission, robots: Sequence[Robot], seed: int, out: Path) -
         folder=out,
         trees={robot.name: robot.tree.infos for robot in robots},
         footprint_radius_m={robot.name: robot.footprint_radius_m for robot in robots},
+        sources=mission.sources,
     )
 
 

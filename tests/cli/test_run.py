@@ -108,13 +108,14 @@ def test_an_explored_mission_ends_with_0_its_figures_and_its_files(folder):
     assert shown.exit_code == 0, shown.output
     lines = shown.stdout.splitlines()
     assert lines[0] == "mission.yaml, seed 3: getting ready (the first time takes longer, it compiles)"
-    assert lines[-5].startswith("explored   ")
-    assert lines[-5].endswith(" · 0 contacts · closest 1.45 m · home within 0 cm")
-    assert lines[-4].startswith("reason     main: ")
-    assert lines[-3:] == [
+    assert lines[-6].startswith("explored   ")
+    assert lines[-6].endswith(" · 0 contacts · closest 1.45 m · home within 0 cm")
+    assert lines[-5].startswith("reason     main: ")
+    assert lines[-4:] == [
         "map        out/map.yaml",
         "report     out/report.html",
         "recording  out/recording.mcap",
+        "replay     explore-bt replay out",
     ]
     result = json.loads((folder / "out" / "result.json").read_text())
     assert (result["outcome"], result["seed"]) == ("explored", 3)

@@ -62,6 +62,7 @@ def test_the_summary_says_how_it_ended_and_where_the_files_are(tmp_path):
         ("map", str(tmp_path / "map.yaml")),
         ("report", str(tmp_path / "report.html")),
         ("recording", str(tmp_path / "recording.mcap")),
+        ("replay", f"explore-bt replay {tmp_path}"),
     ]
 
 

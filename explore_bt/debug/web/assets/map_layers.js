@@ -1,0 +1,188 @@
+// What is drawn over the grid, one function a layer.
+
+import { flat } from "./run_state.js";
+
+export const LAYERS = {
+  scan: "Scan", driven: "Driven path", path: "Planned path", waypoints: "Waypoints", sectors: "Free sectors",
+  "half-planes": "Half-planes", frontiers: "Frontiers", views: "Views", robots: "Other robots", truth: "True pose",
+};
+
+const MOST_POSES = 4000;
+
+/** Draws what is switched on, the farthest back first. */
+export function drawLayers(map) {
+  const { scene, picked, layers } = map;
+  const drawing = picked.state.newest.drawing?.layers ?? {};
+  if (layers.has("scan")) scan(map, picked.state.newest.scan);
+  if (layers.has("sectors")) (drawing.sectors ?? []).forEach((each) => sector(map, each));
+  if (layers.has("half-planes")) (drawing.half_planes ?? []).forEach((each) => halfPlane(map, each));
+  const shown = scene.robots.filter((robot) => robot === picked || layers.has("robots"));
+  if (layers.has("driven")) shown.forEach((robot) => driven(map, robot));
+  if (layers.has("frontiers")) (drawing.frontiers ?? []).forEach((each) => frontier(map, each));
+  if (layers.has("views")) (drawing.views ?? []).forEach((each) => view(map, each));
+  if (layers.has("path")) planned(map, picked.state.newest.path);
+  if (layers.has("waypoints")) waypoints(map, picked.state);
+  if (layers.has("truth")) shown.forEach((robot) => body(map, robot, flat(robot.state.newest.truth?.pose), true));
+  shown.forEach((robot) => body(map, robot, flat(robot.state.newest.pose?.pose), false));
+}
+
+function scan({ pen, at, palette }, message) {
+  const pose = flat(message?.pose);
+  if (!pose) return;
+  const { ranges, start_angle: start, end_angle: end, range_max: far } = message;
+  const step = ranges.length > 1 ? (end - start) / (ranges.length - 1) : 0;
+  const [ox, oy] = at(pose.x, pose.y);
+  pen.beginPath();
+  pen.moveTo(ox, oy);
+  const hits = [];
+  ranges.forEach((range, index) => {
+    if (range === null) return;
+    const angle = pose.yaw + start + index * step, length = Number.isFinite(range) ? range : far ?? 0;
+    const spot = at(pose.x + length * Math.cos(angle), pose.y + length * Math.sin(angle));
+    pen.lineTo(...spot);
+    if (Number.isFinite(range)) hits.push(spot);
+  });
+  pen.closePath();
+  pen.fillStyle = palette.scan;
+  pen.globalAlpha = 0.09;
+  pen.fill();
+  pen.globalAlpha = 1;
+  for (const [x, y] of hits) pen.fillRect(x - 1, y - 1, 2, 2);
+}
+
+function driven({ pen, at, until, palette }, robot) {
+  const { x, y } = robot.story.poses, count = until(robot);
+  if (count < 2) return;
+  pen.beginPath();
+  const every = Math.ceil(count / MOST_POSES);
+  for (let i = 0; i < count; i += every) pen.lineTo(...at(x[i], y[i]));
+  pen.lineTo(...at(x[count - 1], y[count - 1]));
+  pen.strokeStyle = palette[robot.colour];
+  pen.globalAlpha = 0.75;
+  pen.lineWidth = 1.6;
+  pen.lineJoin = "round";
+  pen.stroke();
+  pen.globalAlpha = 1;
+}
+
+function planned({ pen, at, palette }, message) {
+  const poses = message?.poses ?? [];
+  if (poses.length < 2) return;
+  pen.beginPath();
+  for (const { position } of poses) pen.lineTo(...at(position.x, position.y));
+  pen.strokeStyle = palette.planned;
+  pen.lineWidth = 2.4;
+  pen.setLineDash([7, 5]);
+  pen.stroke();
+  pen.setLineDash([]);
+}
+
+function waypoints({ pen, at, palette, spots }, state) {
+  state.visited.forEach((visited, index) => {
+    const pose = flat(visited.pose);
+    if (!pose) return;
+    const [x, y] = at(pose.x, pose.y);
+    pen.fillStyle = palette.panel;
+    pen.strokeStyle = palette.waypoint;
+    pen.lineWidth = 1.4;
+    pen.beginPath();
+    pen.moveTo(x, y);
+    pen.lineTo(x + 9 * Math.cos(pose.yaw), y - 9 * Math.sin(pose.yaw));
+    pen.stroke();
+    disc(pen, x, y, 3.2);
+    spots.push({ x, y, words: `waypoint ${index}: ${visited.reason}` });
+  });
+  const goal = state.newest.waypoint, pose = flat(goal?.pose);
+  if (!pose || !state.board.goal) return;
+  const [x, y] = at(pose.x, pose.y);
+  pen.strokeStyle = pen.fillStyle = palette.planned;
+  pen.lineWidth = 2.2;
+  pen.beginPath();
+  pen.arc(x, y, 7, 0, 2 * Math.PI);
+  pen.moveTo(x + 7 * Math.cos(pose.yaw), y - 7 * Math.sin(pose.yaw));
+  pen.lineTo(x + 15 * Math.cos(pose.yaw), y - 15 * Math.sin(pose.yaw));
+  pen.stroke();
+  spots.push({ x, y, words: `goal: ${goal.reason}` });
+}
+
+function sector({ pen, at, scale, palette, spots }, each) {
+  const [x, y] = at(each.x, each.y), radius = (each.range_m ?? 5) * scale, colour = palette[each.state] ?? palette.open;
+  pen.beginPath();
+  pen.moveTo(x, y);
+  pen.arc(x, y, radius, -each.from_rad, -each.to_rad, true);
+  pen.closePath();
+  pen.fillStyle = pen.strokeStyle = colour;
+  pen.globalAlpha = each.state === "taken" ? 0.24 : 0.1;
+  pen.fill();
+  pen.globalAlpha = 0.9;
+  pen.lineWidth = each.state === "taken" ? 1.8 : 1;
+  pen.setLineDash(each.state === "rejected" ? [3, 3] : []);
+  pen.stroke();
+  pen.setLineDash([]);
+  pen.globalAlpha = 1;
+  const middle = (each.from_rad + each.to_rad) / 2;
+  spots.push({ x: x + 0.7 * radius * Math.cos(middle), y: y - 0.7 * radius * Math.sin(middle), words: `${each.state} sector: ${each.reason ?? ""}` });
+}
+
+function halfPlane({ pen, at, palette }, { x, y, normal_x: nx, normal_y: ny }) {
+  const size = Math.hypot(nx, ny) || 1, ux = nx / size, uy = ny / size, half = 1.2;
+  pen.strokeStyle = palette.soft;
+  pen.lineWidth = 1.2;
+  pen.beginPath();
+  pen.moveTo(...at(x - half * uy, y + half * ux));
+  pen.lineTo(...at(x + half * uy, y - half * ux));
+  pen.moveTo(...at(x, y));
+  pen.lineTo(...at(x + 0.25 * ux, y + 0.25 * uy));
+  pen.stroke();
+}
+
+function frontier({ pen, at, palette, spots }, each) {
+  const [x, y] = at(each.x, each.y);
+  pen.fillStyle = pen.strokeStyle = palette[each.state] ?? palette.open;
+  pen.lineWidth = 1.5;
+  pen.beginPath();
+  pen.moveTo(x, y - 5); pen.lineTo(x + 5, y); pen.lineTo(x, y + 5); pen.lineTo(x - 5, y);
+  pen.closePath();
+  if (each.state === "rejected") pen.stroke(); else pen.fill();
+  spots.push({ x, y, words: `${each.state} frontier${each.size_m ? `, ${each.size_m.toFixed(1)} m` : ""}: ${each.reason ?? ""}` });
+}
+
+function view({ pen, at, palette, spots }, each) {
+  const [x, y] = at(each.x, each.y), yaw = each.yaw_rad ?? 0;
+  pen.strokeStyle = palette[each.state] ?? palette.open;
+  pen.lineWidth = 1.4;
+  pen.beginPath();
+  pen.moveTo(x + 10 * Math.cos(yaw - 0.5), y - 10 * Math.sin(yaw - 0.5));
+  pen.lineTo(x, y);
+  pen.lineTo(x + 10 * Math.cos(yaw + 0.5), y - 10 * Math.sin(yaw + 0.5));
+  pen.stroke();
+  spots.push({ x, y, words: `${each.state} view${each.gain_m2 ? `, ${each.gain_m2.toFixed(1)} m² to see` : ""}` });
+}
+
+function body({ pen, at, scale, palette, spots }, robot, pose, ghost) {
+  if (!pose) return;
+  const [x, y] = at(pose.x, pose.y), radius = Math.max(robot.radius * scale, 4), braking = robot.state.newest.gate?.braking;
+  pen.lineWidth = braking ? 3 : 2;
+  pen.strokeStyle = braking ? palette.failure : palette[robot.colour];
+  pen.fillStyle = palette[robot.colour];
+  pen.globalAlpha = ghost ? 0.4 : 1;
+  if (ghost) pen.setLineDash([3, 3]);
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  if (!ghost) { pen.globalAlpha = 0.28; pen.fill(); pen.globalAlpha = 1; }
+  pen.stroke();
+  pen.beginPath();
+  pen.moveTo(x, y);
+  pen.lineTo(x + radius * Math.cos(pose.yaw), y - radius * Math.sin(pose.yaw));
+  pen.stroke();
+  pen.setLineDash([]);
+  pen.globalAlpha = 1;
+  if (!ghost) spots.push({ x, y, words: braking ? `${robot.name} brakes: ${robot.state.newest.gate.reason}` : robot.name });
+}
+
+function disc(pen, x, y, radius) {
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  pen.fill();
+  pen.stroke();
+}
