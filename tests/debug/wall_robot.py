@@ -10,7 +10,7 @@ from explore_bt.clock import Clock, WallClock
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Measurement
 
-HASTE = 4.0
+HASTE = 2.0
 """Seconds of mission time to one of the wall's."""
 
 
