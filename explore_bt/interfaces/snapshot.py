@@ -7,7 +7,17 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 
 from explore_bt.interfaces.held_by import HeldBy
-from explore_bt.types import Estimate, Measurement, MotionState, OccupancyGrid, Path, Pose2, Scan2D, Score
+from explore_bt.types import (
+    Drawing,
+    Estimate,
+    Measurement,
+    MotionState,
+    OccupancyGrid,
+    Path,
+    Pose2,
+    Scan2D,
+    Score,
+)
 
 __all__ = ["Event", "NodeInfo", "NodeState", "RobotSnapshot", "RunInfo", "TickSnapshot"]
 
@@ -69,6 +79,7 @@ class RobotSnapshot:
         held_by: what kind of reason that is.
         true_pose: where the driver knows it.
         measured: what SLAM was given since the tick before, in this order.
+        drawing: what the leaves saw in the last tick in which any of them decided; the same object till then.
     """
 
     robot: str
@@ -84,6 +95,7 @@ class RobotSnapshot:
     true_pose: Pose2 | None = None
     measured: tuple[Measurement, ...] = ()
     held_by: HeldBy = HeldBy.NOTHING
+    drawing: Drawing = Drawing()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 
 from explore_bt.interfaces import NodeState, RobotSnapshot
+from explore_bt.recording.drawing import drawing_message
 from explore_bt.recording.foxglove import (
     grid_message,
     path_message,
@@ -20,6 +21,7 @@ from explore_bt.recording.foxglove import (
 from explore_bt.recording.measurements import measurements_message
 from explore_bt.recording.values import to_json
 from explore_bt.types import (
+    Drawing,
     Health,
     Imu,
     Measurement,
@@ -91,6 +93,7 @@ class RobotTrack:
         self._grid_written: OccupancyGrid | None = None
         self._path: object = _NOTHING
         self._gate_reason = ""
+        self._drawing = Drawing()
         self._tree_due, self._board_due = _Throttle(periods.key_frame), _Throttle(periods.key_frame)
         self._scan_due, self._map_due = _Throttle(periods.scan), _Throttle(periods.map)
         self._path_due, self._state_due = _Throttle(periods.path), _Throttle(periods.state)
@@ -105,6 +108,7 @@ class RobotTrack:
         self._sensing(time_ns, robot)
         self._plan(time_ns, robot.path)
         self._gate(time_ns, robot.gate_reason)
+        self._draw(time_ns, robot.drawing)
         self._measured += [each for each in robot.measured if isinstance(each, self._kinds)]
 
     def write_measurements(self, time_ns: int) -> None:
@@ -229,6 +233,11 @@ class RobotTrack:
             self._gate_reason = reason
             head = f'{{"timestamp":{time_json(time_ns)},"braking":{_flag(bool(reason))}'
             self._write(self._topic + "gate", time_ns, f'{head},"reason":{quote(reason)}}}')
+
+    def _draw(self, time_ns: int, drawing: Drawing) -> None:
+        if drawing is not self._drawing and drawing != self._drawing:
+            self._write(self._topic + "drawing", time_ns, drawing_message(time_ns, drawing))
+        self._drawing = drawing
 
 
 def _flag(value: bool) -> str:

@@ -51,6 +51,25 @@ _CLOUD = _object(
     points=_BYTES,
     times=_BYTES,
 )
+_VERDICT: _Schema = {"type": "string", "enum": ["taken", "rejected", "open"]}
+_LAYERS = _object(
+    sectors=_array(
+        _object(
+            x=_NUMBER,
+            y=_NUMBER,
+            from_rad=_NUMBER,
+            to_rad=_NUMBER,
+            range_m=_NUMBER,
+            state=_VERDICT,
+            reason=_TEXT,
+        )
+    ),
+    half_planes=_array(_object(x=_NUMBER, y=_NUMBER, normal_x=_NUMBER, normal_y=_NUMBER)),
+    frontiers=_array(_object(x=_NUMBER, y=_NUMBER, size_m=_NUMBER, state=_VERDICT, reason=_TEXT)),
+    views=_array(
+        _object(x=_NUMBER, y=_NUMBER, yaw_rad=_NUMBER, gain_m2=_NUMBER, state=_VERDICT, reason=_TEXT)
+    ),
+)
 _NODE_STATE = _object(id=_INTEGER, status=_TEXT, message=_TEXT)
 _NODE = _object(
     id=_INTEGER, path=_TEXT, name=_TEXT, type=_TEXT, parent={"type": ["integer", "null"]}, place=_TEXT
@@ -97,6 +116,7 @@ _SCHEMAS: Mapping[str, _Schema] = {
     "explore_bt.Tree": _object(timestamp=_TIME, tick=_INTEGER, key_frame=_FLAG, nodes=_array(_NODE_STATE)),
     "explore_bt.Blackboard": _object(timestamp=_TIME, key_frame=_FLAG, set=_ANY, removed=_array(_TEXT)),
     "explore_bt.Gate": _object(timestamp=_TIME, braking=_FLAG, reason=_TEXT),
+    "explore_bt.Drawing": _object(timestamp=_TIME, layers=_LAYERS, left_out=_ANY),
     "explore_bt.State": _object(
         timestamp=_TIME,
         speed_mps=_NUMBER,

@@ -41,5 +41,6 @@ ROBOT_TOPICS = (
     Topic("/<robot>/waypoint", "foxglove.PoseInFrame", "on change"),
     Topic("/<robot>/visited", "foxglove.PoseInFrame", "one message for each waypoint"),
     Topic("/<robot>/gate", "explore_bt.Gate", "on change"),
+    Topic("/<robot>/drawing", "explore_bt.Drawing", "on change: whenever a leaf has looked about"),
 )
 TOPICS = RUN_TOPICS + ROBOT_TOPICS

@@ -28,11 +28,13 @@ from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.legs import plan_through
+from explore_bt.runtime.map_news import MapNews
 from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
+from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
@@ -41,11 +43,11 @@ from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, h
 from explore_bt.types import (
     Battery,
     Budget,
+    Drawing,
     Estimate,
     Health,
     Measurement,
     MovingObstacle,
-    OccupancyGrid,
     Path,
     Pose2,
     Scan2D,
@@ -84,11 +86,12 @@ class Robot:
         self.tree = build_tree(spec.tree, self, self.blackboard)
         self._probe: Probe | None = None
         self._ticks: Counter[int] = Counter()
+        self._sketch = Sketch()
         self._scan: Scan2D | None = None
         self._measured: list[Measurement] = []
         self._view: MapView | None = None
         self._map_memory = MapMemory()
-        self._planned_on: OccupancyGrid | None = None
+        self._map_news = MapNews(self.slam, self._planner)
         self._tight = TightPlaces()
         self._purse = Purse(mission.limits)
         self._slam_fault = ""
@@ -207,7 +210,7 @@ class Robot:
     def _plan(self, goal: Pose2, via: Sequence[tuple[float, float]], radius_m: float) -> Path:
         here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
         grid = self.view().grid
-        self._tell_change(grid)
+        self._map_news.tell(grid)
         return plan_through(
             lambda start, end: self._planner.plan(grid, start, end, radius_m, lambda: self._stop.is_raised),
             here,
@@ -215,18 +218,9 @@ class Robot:
             goal,
         )
 
-    def _tell_change(self, grid: OccupancyGrid) -> None:
-        """Tell the planner where the map differs from the one planned on before, if SLAM knows.
-
-        A map with tight places marked has cells that SLAM knows nothing of: then nobody knows.
-        """
-        plain = grid if grid is self.slam.grid() else None
-        before, self._planned_on = self._planned_on, plain
-        if before is None or plain is None or before is plain:
-            return
-        window = self.slam.changed_since(before.revision)
-        if window is not None:
-            self._planner.expect_change(before, plain, window)
+    def draw(self, drawing: Drawing) -> None:
+        """Show observers what a leaf looked at."""
+        self._sketch.add(drawing, self.now_s())
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place that proved too tight for the safety gate."""
@@ -315,6 +309,7 @@ class Robot:
             true_pose=self.scores.true_pose,
             measured=measured,
             held_by=self.pilot.held_by,
+            drawing=self._sketch.drawing,
         )
 
     def tell(self, level: str, source: str, message: str) -> None:
