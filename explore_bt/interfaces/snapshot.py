@@ -8,10 +8,12 @@ from pathlib import Path as FilePath
 
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.types import (
+    Budget,
     Drawing,
     Estimate,
     Measurement,
     MotionState,
+    MovingObstacle,
     OccupancyGrid,
     Path,
     Pose2,
@@ -47,11 +49,14 @@ class NodeState:
 
     Attributes:
         ticks: how often it was ticked in this tick of the tree; 0 leaves an older status standing.
+        successes, failures: how often it ended so in this tick of the tree.
     """
 
     status: str
     message: str
     ticks: int = field(default=0, compare=False)
+    successes: int = field(default=0, compare=False)
+    failures: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,6 +84,9 @@ class RobotSnapshot:
         held_by: what kind of reason that is.
         true_pose: where the driver knows it.
         measured: what SLAM was given since the tick before, in this order.
+        moving: what moves around the robot, as the newest scan tells.
+        budgets: what of time, distance and battery the mission allows still.
+        charge: of the battery, a share; None where nobody measures it.
         drawing: what the leaves saw in the last tick in which any of them decided; the same object till then.
     """
 
@@ -96,6 +104,9 @@ class RobotSnapshot:
     measured: tuple[Measurement, ...] = ()
     held_by: HeldBy = HeldBy.NOTHING
     drawing: Drawing = Drawing()
+    moving: tuple[MovingObstacle, ...] = ()
+    budgets: tuple[Budget, ...] = ()
+    charge: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,7 +120,11 @@ class TickSnapshot:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something worth a line: ``level`` is ``info``, ``warning`` or ``error``."""
+    """Something worth a line: ``level`` is ``debug``, ``info``, ``warning`` or ``error``.
+
+    Sources: ``recovery``, ``safety gate``, ``slam``, ``tight place``, ``mission``, a plugin
+    (``planner skeleton``) or, at level ``debug``, the path of the leaf that speaks.
+    """
 
     stamp_s: float
     robot: str

@@ -5,6 +5,7 @@ from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions
 from explore_bt.recording.measurements_reader import decode_measurements
 from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
 from explore_bt.recording.topics import TOPICS, Topic
+from explore_bt.recording.tree_tally import NodeTally, TreeTally
 from explore_bt.recording.values import to_json
 
 __all__ = [
@@ -12,10 +13,12 @@ __all__ = [
     "TOPICS",
     "McapRecorder",
     "McapRecorderOptions",
+    "NodeTally",
     "RecordedMessage",
     "Recording",
     "RecordingError",
     "Topic",
+    "TreeTally",
     "decode_grid",
     "decode_measurements",
     "read_recording",

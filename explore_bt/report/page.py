@@ -13,7 +13,6 @@ from explore_bt.report.map_picture import cells_png, data_uri, first_seen_png
 from explore_bt.report.palette import CLEARANCE_STOPS, robot_colour
 from explore_bt.report.run_history import RunHistory
 from explore_bt.report.sections import (
-    events_section,
     files_section,
     gate_section,
     nodes_section,
@@ -22,6 +21,7 @@ from explore_bt.report.sections import (
     tiles,
     why_section,
 )
+from explore_bt.report.what_happened import what_happened_section
 from explore_bt.report.words import headline, outcome_words
 from explore_bt.types import OccupancyGrid, Result
 
@@ -54,7 +54,7 @@ def report_page(history: RunHistory, result: Result) -> str:
         "charts": _charts(robots, tracks, history.end_s),
         "slam": slam_section(result),
         "gate": gate_section(robots) if any(robot.nodes for robot in robots) else "",
-        "events": events_section(history),
+        "events": what_happened_section(history),
         "trees": "".join(nodes_section(robot, several) for robot in robots if robot.nodes),
         "result": result_section(result),
     }
@@ -93,6 +93,7 @@ def _charts(robots: list[RobotHistory], tracks: list[Track], end_s: float) -> st
             chart("Mapped", "%", lines("coverage", 100.0), end_s, top=100.0),
             chart("Driven", "m", lines("distance_m"), end_s),
             chart("Clearance", "m", lines("clearance_m"), end_s),
+            chart("Battery", "%", lines("charge", 100.0), end_s, top=100.0),
         )
     )
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -20,12 +19,12 @@ from explore_bt.interfaces import (
     Event,
     MapMemory,
     MapView,
-    NodeState,
     RobotContext,
     RobotSnapshot,
 )
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
+from explore_bt.runtime.gate_news import GateNews
 from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.legs import plan_through
 from explore_bt.runtime.map_news import MapNews
@@ -38,7 +37,9 @@ from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
+from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
+from explore_bt.runtime.tree_news import TreeNews
 from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
     Battery,
@@ -85,7 +86,7 @@ class Robot:
         self.blackboard = Blackboard()
         self.tree = build_tree(spec.tree, self, self.blackboard)
         self._probe: Probe | None = None
-        self._ticks: Counter[int] = Counter()
+        self._counts = TickCounts(self.tree.nodes)
         self._sketch = Sketch()
         self._scan: Scan2D | None = None
         self._measured: list[Measurement] = []
@@ -97,7 +98,8 @@ class Robot:
         self._slam_fault = ""
         self._logged: set[tuple[str, str]] = set()
         self._health_news = HealthNews()
-        self._gate_reason = ""
+        self._gate_news = GateNews()
+        self._tree_news = TreeNews(self.tree)
         self._people = People()
         self.moving: tuple[MovingObstacle, ...] = ()
 
@@ -267,7 +269,9 @@ class Robot:
         """Tick the tree once."""
         try:
             for node in tick(self.tree.root, self._probe):
-                self._ticks[id(node)] += 1
+                self._counts.note(node)
+                for news in self._tree_news.of(node, self.now_s()):
+                    self.tell(*news)
         except Exception as error:  # a leaf is a plugin too: its failure ends the mission, not the process
             reason = str(error) if isinstance(error, PortUnsetError) else repr(error)
             self.blackboard.write(REASON_KEY, f"a leaf failed: {reason}")
@@ -291,7 +295,6 @@ class Robot:
     def snapshot(self) -> RobotSnapshot:
         """What observers are shown after a tick; what was measured and who was ticked is shown once."""
         measured, self._measured = tuple(self._measured), []
-        ticks, self._ticks = self._ticks, Counter()
         return RobotSnapshot(
             robot=self.name,
             estimate=self.estimate(),
@@ -300,16 +303,16 @@ class Robot:
             path=self.pilot.path,
             motion=self.pilot.motion,
             gate_reason=self.pilot.gate_reason,
-            nodes=tuple(
-                NodeState(_status_word(node.status), node.feedback_message, ticks[id(node)])
-                for node in self.tree.nodes
-            ),
+            nodes=self._counts.states(),
             blackboard=dict(self.blackboard),
             score=self.scores.score(),
             true_pose=self.scores.true_pose,
             measured=measured,
             held_by=self.pilot.held_by,
             drawing=self._sketch.drawing,
+            moving=self.moving,
+            budgets=self.budgets(),
+            charge=self._purse.charge,
         )
 
     def tell(self, level: str, source: str, message: str) -> None:
@@ -380,10 +383,8 @@ class Robot:
             self.tell("info" if estimate.health is Health.OK else "warning", "slam", news)
 
     def _watch_gate(self) -> None:
-        if self.pilot.gate_reason and not self._gate_reason and self._scan is not None:
-            self.tell("warning", "safety gate", self.pilot.gate_reason)
-        self._gate_reason = self.pilot.gate_reason
-
-
-def _status_word(status: Status) -> str:
-    return "idle" if status is Status.INVALID else str(status.value).lower()
+        if self._scan is None:
+            return  # before the first one there is nothing to drive by, nor to drive to
+        news = self._gate_news.of(self.pilot.gate_reason, self.pilot.held_by, self.now_s())
+        if news:
+            self.tell("warning" if self._gate_news.is_held else "info", "safety gate", news)

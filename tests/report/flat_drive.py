@@ -11,11 +11,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.interfaces import Event, NodeInfo, NodeState, RobotSnapshot, RunInfo, TickSnapshot
+from explore_bt.interfaces import Event, HeldBy, NodeInfo, NodeState, RobotSnapshot, RunInfo, TickSnapshot
 from explore_bt.types import (
     FREE,
     OCCUPIED,
     UNKNOWN,
+    Budget,
     Drawing,
     Estimate,
     FrontierMark,
@@ -24,6 +25,7 @@ from explore_bt.types import (
     Imu,
     Measurement,
     MotionState,
+    MovingObstacle,
     OccupancyGrid,
     Outcome,
     Path,
@@ -183,9 +185,9 @@ def ancestors(index: int) -> set[int]:
 def states(active: int, message: str, choice: str) -> tuple[NodeState, ...]:
     running = ancestors(active)
     return tuple(
-        NodeState("running", message if i == active else "")
+        NodeState("running", message if i == active else "", ticks=1)
         if i in running
-        else NodeState("success", choice if i == CHOOSE else "")
+        else NodeState("success", choice if i == CHOOSE else "", ticks=1, successes=1)
         if i < active
         and NODES[i][1] in ("find_next_heading", "plan_path", "slam_ok", "wait_for_map")
         and i <= 13
@@ -255,6 +257,10 @@ class _Robot:
             true_pose=Pose2(*map(float, pose)),
             measured=self._measured(stamp_s),
             drawing=self.drawing,
+            moving=(MovingObstacle(7, (1.0, 0.1 * (index % 20)), (0.0, 1.0), 0.2, stamp_s),) * (index < 40),
+            budgets=(Budget("time", "s", 900.0, 900.0 - stamp_s),),
+            charge=1.0 - stamp_s / 3600.0,
+            held_by=HeldBy.OBSTACLE if braking else HeldBy.NOTHING,
         )
 
     def _measured(self, stamp_s: float) -> tuple[Measurement, ...]:
