@@ -7,12 +7,14 @@ from typing import Annotated
 import typer
 
 from explore_bt.cli.check import check
+from explore_bt.cli.export import export
 from explore_bt.cli.new_plugin import new_plugin
 from explore_bt.cli.plugins import plugins
 from explore_bt.cli.run import run
 from explore_bt.cli.schema import schema
 from explore_bt.cli.show import show
 from explore_bt.cli.slam import slam
+from explore_bt.cli.stats import stats
 from explore_bt.cli.world import world
 from explore_bt.version import __version__
 
@@ -64,6 +66,8 @@ app.command(epilog="Example: explore-bt run 01_apartment --set stride=1.2 --seed
 app.command(epilog="Example: explore-bt check missions/mine.yaml --set clearance='0.30 m'")(check)
 app.command(epilog="Example: explore-bt show 01_apartment --dot | dot -Tsvg -o tree.svg")(show)
 app.command(epilog="Example: explore-bt slam intel.clf.bz2 --out runs/intel --odometry")(slam)
+app.command(epilog="Example: explore-bt export runs/first --csv tables")(export)
+app.command(epilog="Example: explore-bt stats runs/* --never")(stats)
 app.command(epilog="Example: explore-bt world --kind apartment --seed 3 --out flat.yaml")(world)
 app.command(epilog="Example: explore-bt schema --out missions/schema.json")(schema)
 app.command(epilog="Example: explore-bt plugins --kind planner --options")(plugins)

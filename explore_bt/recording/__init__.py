@@ -5,6 +5,7 @@ from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions
 from explore_bt.recording.measurements_reader import decode_measurements
 from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
 from explore_bt.recording.topics import TOPICS, Topic
+from explore_bt.recording.tree_statistics import NodeStatistics, TreeStatistics, tree_statistics
 from explore_bt.recording.tree_tally import NodeTally, TreeTally
 from explore_bt.recording.values import to_json
 
@@ -13,16 +14,19 @@ __all__ = [
     "TOPICS",
     "McapRecorder",
     "McapRecorderOptions",
+    "NodeStatistics",
     "NodeTally",
     "RecordedMessage",
     "Recording",
     "RecordingError",
     "Topic",
+    "TreeStatistics",
     "TreeTally",
     "decode_grid",
     "decode_measurements",
     "read_recording",
     "to_json",
+    "tree_statistics",
 ]
 
 SINKS = (McapRecorder,)

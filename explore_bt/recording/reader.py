@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -80,9 +80,16 @@ class Recording:
         return tuple(self.info.get("trees", {}))
 
     def messages(
-        self, topic: str | None = None, start_s: float = 0.0, end_s: float = float("inf")
+        self, topic: str | Collection[str] | None = None, start_s: float = 0.0, end_s: float = float("inf")
     ) -> Iterator[RecordedMessage]:
-        """Messages of one topic (None: of all) with ``start_s <= stamp <= end_s``, in file order."""
+        """Messages of one topic, of several, or of all (None), in file order.
+
+        Args:
+            topic: which.
+            start_s: the first stamp that counts, mission time.
+            end_s: the last one.
+        """
+        wanted = {topic} if isinstance(topic, str) else topic
         for chunk in self._chunks:
             if chunk.message_end_time * 1e-9 < start_s or chunk.message_start_time * 1e-9 > end_s:
                 continue
@@ -92,7 +99,7 @@ class Recording:
                 name, stamp_s = self._channels.get(record.channel_id), record.log_time * 1e-9
                 if name is None:  # declared in a chunk that was lost
                     continue
-                if topic in (None, name) and start_s <= stamp_s <= end_s:
+                if (wanted is None or name in wanted) and start_s <= stamp_s <= end_s:
                     yield RecordedMessage(name, stamp_s, json.loads(record.data))
 
 
