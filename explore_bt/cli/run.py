@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from explore_bt.cli.guard import DONE, FAILED, STOPPED, Crash, guarded
-from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
+from explore_bt.cli.loading import MissionArgument, MockOption, SetOption, load_checked
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
 from explore_bt.cli.stopping import stopping_by_signal
@@ -43,6 +43,7 @@ def run(
     sink: Annotated[
         list[str] | None, typer.Option("--sink", metavar="NAME", help="One more observer; may be repeated.")
     ] = None,
+    mock: MockOption = None,
     verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Show the log.")] = False,
 ) -> None:
     """Run a mission; map, recording and report land in a folder.
@@ -50,7 +51,7 @@ def run(
     Exit code: 0 explored, 1 failed or budget spent, 2 wrong input, 130 stopped by hand.
     Ctrl-C stops the robot safely and saves the results.
     """
-    checked, registry = load_checked(mission, set_)
+    checked, registry = load_checked(mission, set_, mock)
     folder = new_run_folder(out, checked.path.stem)
     sinks = _sinks(registry, sink or (), live=not headless and sys.stdout.isatty())
     typer.echo(f"{checked.path}, seed {seed}: getting ready (the first time takes longer, it compiles)")

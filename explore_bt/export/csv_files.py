@@ -14,7 +14,7 @@ __all__ = ["write_csv"]
 
 
 def write_csv(tables: Mapping[str, Table], folder: Path) -> list[Path]:
-    """``NAME.csv`` for each table: UTF-8, comma, a line of names first; an empty cell is an unknown figure.
+    """``NAME.csv`` for each table: RFC 4180 in UTF-8, names first; an empty cell is an unknown figure.
 
     Raises:
         OSError: the folder cannot be written.
@@ -24,7 +24,7 @@ def write_csv(tables: Mapping[str, Table], folder: Path) -> list[Path]:
 
 def _text(table: Table) -> str:
     with io.StringIO(newline="") as text:
-        writer = csv.writer(text, lineterminator="\n")
+        writer = csv.writer(text)
         writer.writerow(table.columns)
         writer.writerows(table.rows())
         return text.getvalue()

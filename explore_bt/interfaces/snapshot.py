@@ -33,6 +33,7 @@ class NodeInfo:
         path: unique, from the root: ``complete/explore/find_next_heading``.
         type: the YAML key (``sequence``, ``find_next_heading``).
         place: ``file:line:column`` in the mission.
+        is_mocked: whether a script plays in the leaf's place.
     """
 
     id: int
@@ -41,6 +42,7 @@ class NodeInfo:
     type: str
     parent: int | None
     place: str
+    is_mocked: bool = False
 
 
 @dataclass(frozen=True, slots=True)

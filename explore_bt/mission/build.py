@@ -19,6 +19,7 @@ from explore_bt.tree import (
     ForceSuccess,
     Guard,
     Invert,
+    MockedLeaf,
     OnFailure,
     Parallel,
     ReactiveFallback,
@@ -78,6 +79,7 @@ def build_tree(spec: NodeSpec, robot: RobotServices, blackboard: Blackboard) -> 
             builder.known[id(node)].type,
             ids[id(node.parent)] if node.parent is not None else None,
             str(builder.known[id(node)].place),
+            isinstance(node, MockedLeaf),
         )
         for index, node in enumerate(nodes)
     )

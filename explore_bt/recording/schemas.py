@@ -90,7 +90,13 @@ _TALLY = _object(
 )
 _NODE_STATE = _object(id=_INTEGER, status=_TEXT, message=_TEXT)
 _NODE = _object(
-    id=_INTEGER, path=_TEXT, name=_TEXT, type=_TEXT, parent={"type": ["integer", "null"]}, place=_TEXT
+    id=_INTEGER,
+    path=_TEXT,
+    name=_TEXT,
+    type=_TEXT,
+    parent={"type": ["integer", "null"]},
+    place=_TEXT,
+    is_mocked=_FLAG,
 )
 
 _SCHEMAS: Mapping[str, _Schema] = {

@@ -73,6 +73,8 @@ def tree_statistics(recordings: Iterable[Recording]) -> TreeStatistics:
         runs += 1
         notes += [f"{recording.path}: {recording.damage}"] if recording.damage else []
         for robot in recording.robots:
+            if any(node.get("is_mocked") for node in recording.info["trees"][robot]):
+                notes.append(f"{recording.path} ({robot}): a dry run, some leaves are mocked")
             tree = [(str(node["path"]), str(node["type"])) for node in recording.info["trees"][robot]]
             trees.setdefault(tuple(tree), []).append(f"{recording.path} ({robot})")
             tallies = _last_tallies(recording, robot)

@@ -13,6 +13,7 @@ from explore_bt.report.map_picture import cells_png, data_uri, first_seen_png
 from explore_bt.report.palette import CLEARANCE_STOPS, robot_colour
 from explore_bt.report.run_history import RunHistory
 from explore_bt.report.sections import (
+    dry_run_note,
     files_section,
     gate_section,
     nodes_section,
@@ -48,6 +49,7 @@ def report_page(history: RunHistory, result: Result) -> str:
         "reason": escape(result.reason[:1].upper() + result.reason[1:]),
         "headline": escape(headline(result)),
         "tiles": tiles(result),
+        "dry_run": dry_run_note(result),
         "legend": _legend(robots, several),
         "why": why_section(result),
         "files": files_section(run.folder),

@@ -16,6 +16,7 @@ from explore_bt.report.words import clock, duration, figure, length, percent
 from explore_bt.types import Result
 
 __all__ = [
+    "dry_run_note",
     "files_section",
     "gate_section",
     "nodes_section",
@@ -53,6 +54,14 @@ def tiles(result: Result) -> str:
         for label, value, note in shown
         if value != "–"
     )
+
+
+def dry_run_note(result: Result) -> str:
+    """A warning above everything else that not all of this was driven; empty for a run that counts."""
+    if not result.mocked:
+        return ""
+    paths = ", ".join(f"<code>{escape(path)}</code>" for path in result.mocked)
+    return f'<p class="dry-run"><b>Dry run:</b> scripts played {paths}. Its figures say nothing.</p>'
 
 
 def why_section(result: Result) -> str:

@@ -21,6 +21,7 @@ from explore_bt.tree.control import (
     halt,
 )
 from explore_bt.tree.leaf import Leaf, Status
+from explore_bt.tree.mocked import MockedLeaf, Round, Script, mocked
 from explore_bt.tree.ports import REQUIRED, Input, Key, Output, PortUnsetError
 from explore_bt.tree.probe import Probe, attach, detach, tick
 
@@ -37,6 +38,7 @@ __all__ = [
     "Invert",
     "Key",
     "Leaf",
+    "MockedLeaf",
     "OnFailure",
     "Output",
     "Parallel",
@@ -46,6 +48,8 @@ __all__ = [
     "ReactiveSequence",
     "Repeat",
     "Retry",
+    "Round",
+    "Script",
     "Sequence",
     "Status",
     "Subtree",
@@ -53,5 +57,6 @@ __all__ = [
     "attach",
     "detach",
     "halt",
+    "mocked",
     "tick",
 ]

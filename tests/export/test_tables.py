@@ -22,7 +22,8 @@ def drive(tmp_path_factory):
     """Half a minute of two robots, recorded."""
     drive = make_drive(tmp_path_factory.mktemp("drive"), speed_mps=0.8, robots=("anna", "bert"))
     said = Event(2.0, "bert", "debug", "root/drive_to", 'two "lines",\nof it')
-    drive = replace(drive, ticks=drive.ticks[:300], events=[*drive.events, said])
+    events = sorted([*drive.events, said], key=lambda event: event.stamp_s)
+    drive = replace(drive, ticks=drive.ticks[:300], events=events)
     drive.show_to(McapRecorder(McapRecorder.Options()))
     return drive
 
@@ -107,7 +108,7 @@ def test_the_same_tables_come_out_as_csv_and_as_parquet(tables, drive, tmp_path)
         assert f"{name}.csv  {len(table)} row" in told.stdout
 
 
-@given(st.lists(st.text(st.characters(exclude_categories=("Cs",), exclude_characters="\x00"))))
+@given(st.lists(st.text(alphabet="a é,;\"'\r\n\t→", max_size=8), max_size=5))
 def test_any_words_survive_csv(tmp_path_factory, words):
     table = Table("n", "said")
     for number, said in enumerate(words):
