@@ -138,6 +138,7 @@ def test_nothing_to_do_and_folders_in_use_are_refused_before_anything_is_written
     (tmp_path / "old.txt").touch()
     for arguments, complaint in (
         ([], "nothing to export to"),
+        (["--csv", str(tmp_path / "new"), "--video", "film.avi"], "videos are MP4 files; write film.mp4"),
         (["--csv", str(tmp_path / "new"), "--parquet", str(tmp_path)], "is not empty"),
     ):
         told = CliRunner().invoke(app, ["export", str(drive.run.folder), *arguments])
