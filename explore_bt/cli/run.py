@@ -13,6 +13,7 @@ from explore_bt.cli.guard import DONE, FAILED, STOPPED, Crash, guarded
 from explore_bt.cli.loading import MissionArgument, MockOption, SetOption, load_checked
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
+from explore_bt.cli.sinks import make_sinks
 from explore_bt.cli.stopping import stopping_by_signal
 from explore_bt.cli.summary import summary_lines
 from explore_bt.errors import UserError
@@ -41,7 +42,10 @@ def run(
         bool, typer.Option("--headless", help="No live view, a line every ten seconds.")
     ] = False,
     sink: Annotated[
-        list[str] | None, typer.Option("--sink", metavar="NAME", help="One more observer; may be repeated.")
+        list[str] | None,
+        typer.Option(
+            "--sink", metavar="NAME", help="One more observer (foxglove, or rerun,to=file); may be repeated."
+        ),
     ] = None,
     mock: MockOption = None,
     verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Show the log.")] = False,
@@ -75,9 +79,7 @@ def _drive(mission: Mission, registry: Registry, folder: Path, seed: int, sinks:
 
 
 def _sinks(registry: Registry, more: Sequence[str], *, live: bool) -> list[Sink]:
-    names = ["mcap", "report", "terminal" if live else "progress", *more]
-    classes: list[type[Sink]] = [registry.get("sink", name) for name in dict.fromkeys(names)]
-    return [sink(sink.Options()) for sink in classes]
+    return make_sinks(registry, ["mcap", "report", "terminal" if live else "progress", *more])
 
 
 def _show(result: Result, folder: Path) -> None:

@@ -1,30 +1,48 @@
 """The recording of a run: one MCAP file that outlives a crash and opens in Foxglove as it is."""
 
-from explore_bt.recording.foxglove import decode_grid
-from explore_bt.recording.mcap_sink import McapRecorder, McapRecorderOptions
+from explore_bt.recording.foxglove import decode_grid, log_message, stamp_ns
+from explore_bt.recording.mcap_sink import (
+    McapRecorder,
+    McapRecorderOptions,
+    periods_of,
+    result_message,
+    run_message,
+)
 from explore_bt.recording.measurements_reader import decode_measurements
 from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
-from explore_bt.recording.topics import TOPICS, Topic
+from explore_bt.recording.robot_track import Periods, RobotTrack
+from explore_bt.recording.schemas import schema_text
+from explore_bt.recording.topics import ROBOT_TOPICS, RUN_TOPICS, TOPICS, Topic
 from explore_bt.recording.tree_statistics import NodeStatistics, TreeStatistics, tree_statistics
 from explore_bt.recording.tree_tally import NodeTally, TreeTally
 from explore_bt.recording.values import to_json
 
 __all__ = [
+    "ROBOT_TOPICS",
+    "RUN_TOPICS",
     "SINKS",
     "TOPICS",
     "McapRecorder",
     "McapRecorderOptions",
     "NodeStatistics",
     "NodeTally",
+    "Periods",
     "RecordedMessage",
     "Recording",
     "RecordingError",
+    "RobotTrack",
     "Topic",
     "TreeStatistics",
     "TreeTally",
     "decode_grid",
     "decode_measurements",
+    "log_message",
+    "periods_of",
     "read_recording",
+    "result_message",
+    "run_message",
+    "schema_text",
+    "stamp_ns",
     "to_json",
     "tree_statistics",
 ]

@@ -16,7 +16,7 @@ from explore_bt.recording.values import to_json
 from explore_bt.types import Result
 from explore_bt.units import Duration
 
-__all__ = ["McapRecorder", "McapRecorderOptions"]
+__all__ = ["McapRecorder", "McapRecorderOptions", "periods_of", "result_message", "run_message"]
 
 
 class McapRecorderOptions(PluginOptions):
@@ -46,11 +46,7 @@ class McapRecorder(Sink):
     def open(self, run: RunInfo) -> None:
         """Create the file and write what is known from the start."""
         settings = self._settings
-        periods = Periods(
-            key_frame=stamp_ns(settings.key_frame_period),
-            scan=stamp_ns(settings.scan_period),
-            map=stamp_ns(settings.map_period),
-        )
+        periods = periods_of(settings)
         writer = ChunkWriter(run.folder / "recording.mcap", run.version, stamp_ns(settings.chunk_period))
         writer.register(
             [(topic.pattern, topic.schema) for topic in RUN_TOPICS]
@@ -60,7 +56,7 @@ class McapRecorder(Sink):
             robot: RobotTrack(robot, writer.write, periods, clouds=settings.clouds) for robot in run.trees
         }
         self._writer = writer
-        writer.write("/run", 0, _run_text(run))
+        writer.write("/run", 0, run_message(run))
         writer.flush()
 
     def on_tick(self, tick: TickSnapshot) -> None:
@@ -86,11 +82,21 @@ class McapRecorder(Sink):
         for track in self._tracks.values():
             track.close(self._time_ns)
         if result is not None:
-            writer.write("/result", self._time_ns, _result_text(result))
+            writer.write("/result", self._time_ns, result_message(result))
         writer.close()
 
 
-def _run_text(run: RunInfo) -> str:
+def periods_of(settings: McapRecorderOptions) -> Periods:
+    """How often a robot's messages are written under these options."""
+    return Periods(
+        key_frame=stamp_ns(settings.key_frame_period),
+        scan=stamp_ns(settings.scan_period),
+        map=stamp_ns(settings.map_period),
+    )
+
+
+def run_message(run: RunInfo) -> str:
+    """The message on ``/run``."""
     return json.dumps(
         {
             "mission": run.mission,
@@ -105,7 +111,7 @@ def _run_text(run: RunInfo) -> str:
     )
 
 
-def _result_text(result: Result) -> str:
+def result_message(result: Result) -> str:
     """The result without what a clock on the wall has measured: two equal runs are equal files."""
     figures = result.as_dict()
     figures.pop("wall_time_s")

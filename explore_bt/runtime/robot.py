@@ -222,7 +222,7 @@ class Robot:
 
     def draw(self, drawing: Drawing) -> None:
         """Show observers what a leaf looked at."""
-        self._sketch.add(drawing, self.now_s())
+        self._sketch.add(drawing)
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place that proved too tight for the safety gate."""
@@ -267,6 +267,7 @@ class Robot:
 
     def decide(self) -> Status:
         """Tick the tree once."""
+        self._sketch.begin_tick()
         try:
             for node in tick(self.tree.root, self._probe):
                 self._counts.note(node)
@@ -295,6 +296,8 @@ class Robot:
     def snapshot(self) -> RobotSnapshot:
         """What observers are shown after a tick; what was measured and who was ticked is shown once."""
         measured, self._measured = tuple(self._measured), []
+        nodes = self._counts.states()
+        self._counts.forget()
         return RobotSnapshot(
             robot=self.name,
             estimate=self.estimate(),
@@ -303,7 +306,7 @@ class Robot:
             path=self.pilot.path,
             motion=self.pilot.motion,
             gate_reason=self.pilot.gate_reason,
-            nodes=self._counts.states(),
+            nodes=nodes,
             blackboard=dict(self.blackboard),
             score=self.scores.score(),
             true_pose=self.scores.true_pose,

@@ -8,13 +8,17 @@ __all__ = ["Sketch"]
 
 
 class Sketch:
-    """Layers drawn at one time lie over one another; the first of a later time begins anew."""
+    """Layers drawn in one tick lie over one another; the first of a later tick begins anew."""
 
     def __init__(self) -> None:
         self.drawing = Drawing()
-        self._at_s: float | None = None
+        self._is_of_this_tick = False
 
-    def add(self, drawing: Drawing, now_s: float) -> None:
-        """Add to what was drawn at this time."""
-        self.drawing = drawing.over(self.drawing) if now_s == self._at_s else drawing
-        self._at_s = now_s
+    def begin_tick(self) -> None:
+        """From now on what is drawn is new; till something is, the old drawing stands."""
+        self._is_of_this_tick = False
+
+    def add(self, drawing: Drawing) -> None:
+        """Add to what was drawn in this tick."""
+        self.drawing = drawing.over(self.drawing) if self._is_of_this_tick else drawing
+        self._is_of_this_tick = True

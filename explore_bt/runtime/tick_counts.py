@@ -1,4 +1,4 @@
-"""How the nodes of a tree stand, and how often each was ticked in the last tick of the whole."""
+"""How the nodes of a tree stand, and how often each was ticked in the present tick of the whole."""
 
 from __future__ import annotations
 
@@ -25,9 +25,12 @@ class TickCounts:
         self._counts[id(node), node.status] += 1
 
     def states(self) -> tuple[NodeState, ...]:
-        """All nodes, in their order; what was counted is told once."""
-        counts, self._counts = self._counts, Counter()
-        return tuple(_state(node, counts) for node in self._nodes)
+        """All nodes, in their order, as they are now, with what was counted since ``forget``."""
+        return tuple(_state(node, self._counts) for node in self._nodes)
+
+    def forget(self) -> None:
+        """Count from nothing again."""
+        self._counts.clear()
 
 
 def _state(node: Behaviour, counts: Counter[tuple[int, Status]]) -> NodeState:

@@ -45,10 +45,12 @@ def test_what_is_not_finite_is_null():
     }  # fmt: skip
 
 
-def test_layers_of_one_time_lie_over_one_another_and_those_of_a_later_time_begin_anew():
+def test_layers_of_one_tick_lie_over_one_another_and_those_of_a_later_tick_begin_anew():
     sketch, mark, view = Sketch(), SectorMark(0.0, 0.0, 0.0, 1.0, 1.2), ViewMark(1.0, 1.0, 0.0, 2.0)
-    sketch.add(Drawing(sectors=(mark,), half_planes=()), 1.0)
-    sketch.add(Drawing(views=(view,), sectors=()), 1.0)
+    sketch.add(Drawing(sectors=(mark,), half_planes=()))
+    sketch.add(Drawing(views=(view,), sectors=()))
     assert sketch.drawing == Drawing(sectors=(), half_planes=(), views=(view,))
-    sketch.add(Drawing(frontiers=()), 1.1)
+    sketch.begin_tick()
+    assert sketch.drawing.views == (view,)
+    sketch.add(Drawing(frontiers=()))
     assert sketch.drawing == Drawing(frontiers=())
