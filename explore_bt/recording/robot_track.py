@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 
 from explore_bt.interfaces import HeldBy, NodeState, RobotSnapshot
 from explore_bt.recording.drawing import drawing_message
@@ -20,7 +20,7 @@ from explore_bt.recording.foxglove import (
 )
 from explore_bt.recording.measurements import measurements_message
 from explore_bt.recording.moving import moving_message
-from explore_bt.recording.tree_tally import TreeTally
+from explore_bt.recording.tree_tally import NodeTally, TreeTally
 from explore_bt.recording.values import to_json
 from explore_bt.types import (
     Drawing,
@@ -33,6 +33,7 @@ from explore_bt.types import (
     PointCloud,
     Pose2,
     Scan2D,
+    Score,
     Waypoint,
     WheelOdometry,
 )
@@ -43,6 +44,7 @@ _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), allow_nan=
 _CELLS_PER_SECOND = 40_000  # of map, so that a large building cannot fill the disk
 _SECOND_NS = 1_000_000_000
 _COUNT_PERIOD_NS = 10 * _SECOND_NS
+_SCORES = tuple(each.name for each in fields(Score))
 _NOTHING = object()
 
 
@@ -162,11 +164,8 @@ class RobotTrack:
 
     def _write_counts(self, time_ns: int) -> None:
         if self._tally.nodes:
-            counts = [
-                {"id": index} | {name: round(value, 3) for name, value in asdict(node).items()}
-                for index, node in enumerate(self._tally.nodes)
-            ]
-            text = f'{{"timestamp":{time_json(time_ns)},"nodes":{_encode(counts)}}}'
+            counts = ",".join(_tally(index, node) for index, node in enumerate(self._tally.nodes))
+            text = f'{{"timestamp":{time_json(time_ns)},"nodes":[{counts}]}}'
             self._write(self._topic + "nodes", time_ns, text)
 
     def _blackboard(self, time_ns: int, board: Mapping[str, object]) -> None:
@@ -279,6 +278,13 @@ def _flag(value: bool) -> str:
     return "true" if value else "false"
 
 
+def _tally(index: int, node: NodeTally) -> str:
+    return (
+        f'{{"id":{index},"ticks":{node.ticks},"successes":{node.successes},"failures":{node.failures},'
+        f'"cut_off":{node.cut_off},"running_s":{node.running_s:.3f},"longest_s":{node.longest_s:.3f}}}'
+    )
+
+
 def _state(time_ns: int, robot: RobotSnapshot) -> str:
     figures = {
         "speed_mps": robot.motion.twist.linear_mps,
@@ -289,6 +295,6 @@ def _state(time_ns: int, robot: RobotSnapshot) -> str:
         "moving": len(robot.moving),
         "charge": robot.charge,
         "left": {budget.name: budget.left for budget in robot.budgets},
-        **asdict(robot.score),
+        **{name: getattr(robot.score, name) for name in _SCORES},
     }
     return f'{{"timestamp":{time_json(time_ns)},{_encode(to_json(figures))[1:]}'

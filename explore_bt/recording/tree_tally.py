@@ -35,28 +35,30 @@ class TreeTally:
 
     def __init__(self) -> None:
         self.nodes: list[NodeTally] = []
-        self._begin_s: list[float | None] = []
+        self._begin_s: dict[int, float] = {}
         self._last_s = 0.0
 
     def on_tick(self, stamp_s: float, states: Sequence[NodeState]) -> None:
         """Take in the tree after a tick, its nodes in depth-first order."""
         if len(self.nodes) != len(states):
             self.nodes = [NodeTally() for _ in states]
-            self._begin_s = [None] * len(states)
+            self._begin_s = {}
         elapsed_s, self._last_s = stamp_s - self._last_s, stamp_s
-        for index, (tally, state) in enumerate(zip(self.nodes, states, strict=True)):
-            begin_s = self._begin_s[index]
-            if begin_s is None and state.status != "running" and not state.ticks:
-                continue  # most nodes at most ticks
-            if begin_s is not None:
-                tally.running_s += elapsed_s
-                tally.longest_s = max(tally.longest_s, stamp_s - begin_s)
-            ends = state.successes + state.failures
-            tally.ticks += state.ticks
-            tally.successes += state.successes
-            tally.failures += state.failures
-            if state.status == "running":
-                self._begin_s[index] = stamp_s if begin_s is None or ends else begin_s
-            else:
-                tally.cut_off += begin_s is not None and not ends
-                self._begin_s[index] = None
+        for index, begin_s in self._begin_s.items():
+            tally = self.nodes[index]
+            tally.running_s += elapsed_s
+            tally.longest_s = max(tally.longest_s, stamp_s - begin_s)
+        ticked = [index for index, state in enumerate(states) if state.ticks]  # few of many
+        for index in {*ticked, *self._begin_s}:
+            self._count(index, states[index], stamp_s)
+
+    def _count(self, index: int, state: NodeState, stamp_s: float) -> None:
+        tally, ends = self.nodes[index], state.successes + state.failures
+        tally.ticks += state.ticks
+        tally.successes += state.successes
+        tally.failures += state.failures
+        begin_s = self._begin_s.pop(index, None)
+        if state.status == "running":
+            self._begin_s[index] = stamp_s if begin_s is None or ends else begin_s
+        else:
+            tally.cut_off += begin_s is not None and not ends
