@@ -1,7 +1,7 @@
 """What does the recording of a mission cost?  python benchmarks/recording.py [--mission FILE] [--seed S].
 
 Runs the mission with true poses in place of SLAM, keeps what observers are shown, and gives it to the
-recorder again, several times: its own CPU, without what the run beside it does to caches. Scaled to ten minutes.
+recorder again, several times: its own CPU, without what the run beside it does. Scaled to ten minutes.
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ __all__ = ["Runner"]
 
 FIRST_SCAN_TIMEOUT_S = 5.0
 REST_TIMEOUT_S = 5.0
+_LEVELS = {Outcome.FAILED: "error", Outcome.BUDGET: "warning"}
 
 
 class _Phase(enum.Enum):
@@ -134,7 +135,8 @@ class Runner:
         self.outcome, self.reason = outcome, reason
         self._phase = _Phase.RESTING
         self._rest_until_s = self.now_s + REST_TIMEOUT_S
-        self._observers.event(Event(self.now_s, "", "info", "mission", f"{outcome}: {reason}"))
+        level = _LEVELS.get(outcome, "info")
+        self._observers.event(Event(self.now_s, "", level, "mission", f"{outcome}: {reason}"))
         for robot in self._robots:
             robot.rest()
 
