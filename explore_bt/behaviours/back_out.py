@@ -40,6 +40,7 @@ class BackOut(Retrace):
         track = way_back(self.robot.trajectory().poses[:, :2], self.at_most)
         clearance_m = clearance_at(self.robot.view().grid, track, self._enough_m)
         at_least_m = max(self.at_least, _CLEAR_OF_M) if self._is_scan_near() else self.at_least
+        self._clear_m = float(clearance_m[0])
         self._has_room = bool(clearance_m[0] >= self._enough_m) and at_least_m == 0.0
         self._has_way = len(track) > 1
         if self._has_way and not self._has_room:
@@ -51,7 +52,7 @@ class BackOut(Retrace):
     def update(self) -> Status:
         """Until the place is reached."""
         if self._has_room:
-            self.say("there is room here")
+            self.say(f"there is room here: {self._clear_m:.2f} m clear, {self._enough_m:.2f} m are enough")
             return Status.SUCCESS
         if not self._has_way:
             self.say("no way back: nothing driven yet")

@@ -62,6 +62,7 @@ class BudgetLeft(Leaf):
             try:
                 self._way_m = self.robot.plan(self.robot.home).length_m
                 self._planned_at_m = self.robot.distance_m
+                self.say("")
             except (PlanningFailure, ComponentFailure) as refusal:
                 self.say(f"no way home found: {refusal}")
         if self._way_m is None:

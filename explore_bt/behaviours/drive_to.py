@@ -73,6 +73,7 @@ class DriveTo(Leaf):
         self._via = list(self.goal.via)
         self._held = 0
         self._checked_revision = -1
+        self._cut = ""
         self._begun_m = self.robot.distance_m
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
         self._next_plan_s = 0.0
@@ -84,11 +85,12 @@ class DriveTo(Leaf):
             return self._plan() if self.robot.now_s() >= self._next_plan_s else Status.RUNNING
         self._note_passed()
         if self._is_seen():
-            return self._stop_here("seen from here")
+            return self._stop_here("seen from here", self.feedback_message)
         output = self.robot.pilot.output
         if output.status is ControlStatus.ARRIVED:
             self.reached = self.goal
-            self.say("arrived")
+            away_m = self.robot.estimate().T_map_base.distance_to(self.goal.pose)
+            self.say(f"arrived, {100.0 * away_m:.0f} cm from the goal")
             return Status.SUCCESS
         if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:
             if someone_is_in_the_way(self.robot):
@@ -98,11 +100,12 @@ class DriveTo(Leaf):
             return self._plan_around()
         driven_m = self.robot.distance_m - self._begun_m
         if self.look_again is not None and driven_m >= self.look_again and not self._is_scrap:
-            return self._stop_here("on the way")
+            return self._stop_here("on the way", f"{driven_m:.1f} m driven, time to decide anew")
         return Status.RUNNING
 
-    def _stop_here(self, reason: str) -> Status:
+    def _stop_here(self, reason: str, words: str) -> Status:
         self.reached = Waypoint(self.robot.estimate().T_map_base, reason)
+        self.say(words)
         return Status.SUCCESS
 
     def terminate(self, new_status: Status) -> None:
@@ -110,7 +113,8 @@ class DriveTo(Leaf):
         if new_status is not Status.SUCCESS:
             self.robot.pilot.hold()
 
-    def _plan(self) -> Status:
+    def _plan(self, why: str = "") -> Status:
+        """A path to the goal, and why there has to be another one."""
         goal = self.goal
         try:
             self._path = self.robot.plan(goal.pose, self._via)
@@ -118,14 +122,14 @@ class DriveTo(Leaf):
             if self._may_be_people(refusal):
                 return self._wait_without_path()
             self.failure = refusal.code if isinstance(refusal, PlanningFailure) else "planner_failed"
-            self.say(f"no path: {refusal}")
+            self.say("; ".join(filter(None, (f"no path: {refusal}", why))))
             return Status.FAILURE
         self._without_path_s = None
         self.robot.pilot.follow(self._path)
         x, y = goal.position
-        self.say(
-            f"to ({x:.1f}, {y:.1f}): {self._path.length_m:.1f} m, closest {self._path.min_clearance_m:.2f} m"
-        )
+        length_m, closest_m = self._path.length_m, self._path.min_clearance_m
+        words = f"to ({x:.1f}, {y:.1f}): {length_m:.1f} m, closest {closest_m:.2f} m"
+        self.say("; ".join(filter(None, (words, why))))
         return Status.RUNNING
 
     def _may_be_people(self, refusal: Exception) -> bool:
@@ -149,7 +153,7 @@ class DriveTo(Leaf):
             self.failure = SOMEONE
             self.say(f"someone has been in the way for {waited_s:.0f} s")
             return Status.FAILURE
-        self.say("waiting for someone to pass")
+        self.say(f"waiting for someone to pass, up to {self.give_way:.0f} s")
         return Status.RUNNING
 
     def _note_passed(self) -> None:
@@ -160,11 +164,13 @@ class DriveTo(Leaf):
     def _plan_around(self) -> Status:
         """Another plan; where it has become a detour the tree decides anew, if that is asked for."""
         left_m = self._left_m()
-        status = self._plan()
+        status = self._plan(why=f"the way was cut: {self._cut}")
         if status is not Status.RUNNING or self._path is None or self.look_again is None:
             return status
         more_m = self._path.length_m - left_m
-        return self._stop_here("before a detour") if more_m > _DETOUR_M else status
+        if more_m <= _DETOUR_M:
+            return status
+        return self._stop_here("before a detour", f"{self._cut}; the way around is {more_m:.1f} m longer")
 
     def _left_m(self) -> float:
         assert self._path is not None
@@ -174,13 +180,14 @@ class DriveTo(Leaf):
     def _plan_after_hold(self, reason: str) -> Status:
         """Another plan; from the second hold on without the place ahead, which is then too tight."""
         self._held += 1
+        reason = reason or self.robot.pilot.gate_reason
         if self._held > self.replans:
             self.failure = "held"
-            self.say(f"gave up after {self._held} holds: {reason or self.robot.pilot.gate_reason}")
+            self.say(f"gave up after {self._held} holds: {reason}")
             return Status.FAILURE
         if self._held > 1 and self.robot.pilot.held_by is HeldBy.OBSTACLE:
             self.robot.avoid(self._place_ahead())
-        return self._plan()
+        return self._plan(why=f"plan {self._held} of {self.replans} after being held: {reason}")
 
     def _place_ahead(self) -> tuple[float, float]:
         assert self._path is not None
@@ -198,8 +205,10 @@ class DriveTo(Leaf):
         here = self.robot.estimate().T_map_base
         ahead = _ahead(self._path, here)
         radius = self.robot.footprint_radius_m
-        needed = min(radius, float(ahead[:, 2].min()))
-        return bool(clearance_at(grid, ahead[:, :2], radius).min() < needed)
+        needed_m = min(radius, float(ahead[:, 2].min()))
+        clear_m = float(clearance_at(grid, ahead[:, :2], radius).min())
+        self._cut = f"only {clear_m:.2f} m clear ahead, needs {needed_m:.2f} m"
+        return clear_m < needed_m
 
     @property
     def _is_scrap(self) -> bool:

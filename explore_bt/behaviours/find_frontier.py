@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Literal
 
 import numpy as np
@@ -12,7 +13,7 @@ from explore_bt.behaviours.give_up_goal import GivenUp
 from explore_bt.behaviours.search import HERE_M, Search
 from explore_bt.exploration import Frontier, find_frontiers, nearest_reaching_cell, open_tour
 from explore_bt.tree import Input, Status
-from explore_bt.types import Pose2, Waypoint
+from explore_bt.types import Drawing, FrontierMark, Pose2, Verdict, Waypoint
 from explore_bt.units import Length
 
 __all__ = ["FindFrontier"]
@@ -41,8 +42,9 @@ class FindFrontier(Search):
     def update(self) -> Status:
         """Sort out the frontiers that can be come to, and pick one."""
         travel_m = self._way_m(self.here().xy)
-        open_ones = self._reachable(travel_m)
+        open_ones, shut = self._sorted_out(travel_m)
         if not open_ones:
+            self._draw(shut)
             return self.conclude(
                 f"no reachable frontier of {self.min_size:.2f} m or more is left",
                 ((place.looks_at or place.position, place.reason) for place in self.tried()),
@@ -52,27 +54,40 @@ class FindFrontier(Search):
         looks_at = frontier.centroid
         pose = Pose2(x, y, math.atan2(looks_at[1] - y, looks_at[0] - x))
         self.goal = Waypoint(pose, "frontier", looks_at=looks_at)
-        self.say(f"{len(open_ones)} open frontier{'' if len(open_ones) == 1 else 's'}; → ({x:.1f}, {y:.1f})")
+        reason = f"→ ({x:.1f}, {y:.1f}), {travel_m[self.robot.view().grid.cell_of(x, y)]:.1f} m away"
+        taken = _mark(frontier, Verdict.TAKEN, reason)
+        self._draw((taken, *(_mark(each) for _, each in open_ones if each is not frontier), *shut))
+        self.say(f"{len(open_ones)} open frontier{'' if len(open_ones) == 1 else 's'}; {reason}")
         return Status.SUCCESS
+
+    def _draw(self, marks: Iterable[FrontierMark]) -> None:
+        self.robot.draw(Drawing(frontiers=tuple(marks)))
 
     def _way_m(self, xy: tuple[float, float]) -> NDArray[np.float32]:
         return self.travel_m(xy, max(self.robot.least_margin_m, 0.0))
 
-    def _reachable(self, travel_m: NDArray[np.float32]) -> list[tuple[tuple[float, float], Frontier]]:
-        """Places and their frontiers; a frontier that the robot already stands at keeps its secret."""
+    def _sorted_out(
+        self, travel_m: NDArray[np.float32]
+    ) -> tuple[list[tuple[tuple[float, float], Frontier]], list[FrontierMark]]:
+        """Frontiers with the places to go to, and those that are not gone to.
+
+        One that the robot already stands at keeps its secret.
+        """
         grid, here = self.robot.view().grid, self.here()
-        found = []
+        found, shut = [], []
         for frontier in find_frontiers(grid, self.min_size):
             cell = nearest_reaching_cell(travel_m, frontier.middle_cell, self.within / grid.resolution_m)
-            if cell is None or self._is_given_up(frontier):
-                continue
-            place = grid.center_of(*cell)
-            if math.dist(place, here.xy) <= HERE_M:
+            reason = self._given_up_for(frontier)
+            if cell is None:
+                reason = f"no way leads to within {self.within:.1f} m of it"
+            elif not reason and math.dist(place := grid.center_of(*cell), here.xy) <= HERE_M:
                 reason = "still unknown after looking from here"
                 self.give_up(GivenUp(place, reason, frontier.centroid, was_seen=True))
-                continue
-            found.append((place, frontier))
-        return found
+            if cell is None or reason:
+                shut.append(_mark(frontier, Verdict.REJECTED, reason))
+            else:
+                found.append((grid.center_of(*cell), frontier))
+        return found, shut
 
     def _pick(
         self, open_ones: list[tuple[tuple[float, float], Frontier]], travel_m: NDArray[np.float32]
@@ -88,6 +103,13 @@ class FindFrontier(Search):
         tour = open_tour(np.where(np.isfinite(between), between, _APART_M))
         return chosen[int(tour[1]) - 1]
 
-    def _is_given_up(self, frontier: Frontier) -> bool:
-        looks = [place.looks_at for place in self.tried() if place.looks_at is not None]
-        return any(math.dist(look, frontier.centroid) < _SAME_M for look in looks)
+    def _given_up_for(self, frontier: Frontier) -> str:
+        """Why it is not tried again; empty if it may be."""
+        for place in self.tried():
+            if place.looks_at is not None and math.dist(place.looks_at, frontier.centroid) < _SAME_M:
+                return f"given up before: {place.reason}"
+        return ""
+
+
+def _mark(frontier: Frontier, state: Verdict = Verdict.OPEN, reason: str = "") -> FrontierMark:
+    return FrontierMark(*frontier.centroid, frontier.size_m, state, reason)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from explore_bt.behaviours.give_up_goal import GivenUp
+from explore_bt.behaviours.marks import half_plane_marks, sector_mark
 from explore_bt.exploration import (
     FreeSector,
     HalfPlaneHistory,
@@ -19,7 +22,7 @@ from explore_bt.exploration import (
     visible_unknown_area,
 )
 from explore_bt.tree import Input, Key, Leaf, Output, Status
-from explore_bt.types import Pose2, Scan2D, Waypoint
+from explore_bt.types import Drawing, Pose2, Scan2D, Verdict, Waypoint, wrap_angle
 from explore_bt.units import Area, Length
 
 __all__ = ["FindNextHeading"]
@@ -86,18 +89,39 @@ class FindNextHeading(Leaf):
             self.say("no scan yet")
             return Status.FAILURE
         pose = self.robot.estimate().T_map_base
-        sectors = self._sectors(scan)
-        refusals: list[str] = []
+        looks = self._looks(pose, self._sectors(scan))
+        self._draw(pose, looks)
+        self.say("; ".join((_count(len(looks)), *(look.words for look in looks if look.words))))
+        goal = next((look.goal for look in looks if look.goal is not None), None)
+        if goal is None:
+            return Status.FAILURE
+        self.goal = goal
+        return Status.SUCCESS
+
+    def _looks(self, pose: Pose2, sectors: Iterable[FreeSector]) -> list[_Look]:
+        """Each sector with what was decided about it; those after the one that was taken stay open."""
+        looks: list[_Look] = []
+        is_decided = False
         for sector in sectors:
-            width = f"{math.degrees(sector.width_rad):.0f}°"
-            for stride in self._strides():
-                waypoint = next_waypoint(pose, sector, stride)
-                refusal, gain_m2 = self._judge(waypoint.pose)
-                if not refusal:
-                    return self._take(waypoint, gain_m2, width, refusals, len(sectors))
-            refusals.append(f"{width} refused ({refusal})")
-        self.say("; ".join([_count(len(sectors)), *refusals]))
-        return Status.FAILURE
+            looks.append(_Look(sector) if is_decided else self._look_along(pose, sector))
+            is_decided |= looks[-1].verdict is Verdict.TAKEN
+        return looks
+
+    def _look_along(self, pose: Pose2, sector: FreeSector) -> _Look:
+        """The longest stride that qualifies, else why the shortest one doesn't."""
+        for stride in self._strides():
+            there = next_waypoint(pose, sector, stride).pose
+            refusal, gain_m2 = self._judge(there)
+            if not refusal:
+                reason = f"→ ({there.x:.1f}, {there.y:.1f}), {gain_m2:.1f} m² to see"
+                return _Look(sector, Verdict.TAKEN, reason, Waypoint(there, "safe heading", gain_m2))
+        return _Look(sector, Verdict.REJECTED, refusal)
+
+    def _draw(self, pose: Pose2, looks: Iterable[_Look]) -> None:
+        range_m = self.detection_range
+        marks = (sector_mark(pose, look.sector, range_m, look.verdict, look.reason) for look in looks)
+        planes = self.history.last(self._window)
+        self.robot.draw(Drawing(sectors=tuple(marks), half_planes=half_plane_marks(planes)))
 
     def _sectors(self, scan: Scan2D) -> tuple[FreeSector, ...]:
         return find_free_sectors(
@@ -125,15 +149,15 @@ class FindNextHeading(Leaf):
 
     def _refusal(self, pose: Pose2) -> str:
         """Which of the rules about place and direction a waypoint breaks; empty if none."""
-        window = None if self.half_planes == "all" else int(self.half_planes)
-        if not self.history.contains(pose.xy, window):
-            return "outside the half-planes"
-        if self.revisit:
-            poses = [waypoint.pose for waypoint in self.visited]
-            if repeated_visit(pose, poses, self.detection_range, self.revisit_cosine):
-                return "visited, same direction"
-        if any(_is_near(place, pose) for place in self.given_up):
-            return "given up before"
+        plane = self.history.broken_by(pose.xy, self._window)
+        if plane is not None:
+            (x, y), behind_m = plane.position, -plane.ahead_m(pose.xy)
+            return f"outside the half-planes: {behind_m:.2f} m behind that of ({x:.1f}, {y:.1f})"
+        if self.revisit and (words := self._revisit(pose)):
+            return words
+        for place in self.given_up:
+            if (away_m := math.dist(place.position, pose.xy)) < _GIVEN_UP_RADIUS_M:
+                return f"{away_m:.2f} m from a place given up before: {place.reason}"
         grid = self.robot.view().grid
         needed_m = self.robot.footprint_radius_m + self.margin
         clearance_m = float(clearance_at(grid, np.array([pose.xy]), needed_m)[0])
@@ -141,24 +165,39 @@ class FindNextHeading(Leaf):
             return f"only {clearance_m:.2f} m clear at the waypoint, needs {needed_m:.2f} m"
         return ""
 
-    def _take(
-        self, waypoint: Waypoint, gain_m2: float, width: str, refusals: list[str], count: int
-    ) -> Status:
-        x, y = waypoint.position
-        words = [
-            _count(count),
-            *refusals,
-            f"took {width} → ({x:.1f}, {y:.1f}), {gain_m2:.1f} m² to see",
-        ]
-        self.say("; ".join(words))
-        self.goal = Waypoint(waypoint.pose, "safe heading", gain_m2)
-        return Status.SUCCESS
+    @property
+    def _window(self) -> int | None:
+        return None if self.half_planes == "all" else int(self.half_planes)
+
+    def _revisit(self, pose: Pose2) -> str:
+        """Which waypoint was visited before and left in the same direction; empty if none."""
+        poses = [waypoint.pose for waypoint in self.visited]
+        before = repeated_visit(pose, poses, self.detection_range, self.revisit_cosine)
+        if before is None:
+            return ""
+        turn = abs(math.degrees(wrap_angle(pose.yaw_rad - before.yaw_rad)))
+        away_m = pose.distance_to(before)
+        return f"visited, same direction: {away_m:.2f} m from waypoint {poses.index(before)}, {turn:.0f}° off"
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """A sector, and what was decided about it."""
+
+    sector: FreeSector
+    verdict: Verdict = Verdict.OPEN
+    reason: str = ""
+    goal: Waypoint | None = None
+
+    @property
+    def words(self) -> str:
+        """Empty for one that was not looked at."""
+        turn = math.degrees(wrap_angle(self.sector.bisector_rad))
+        which = f"{math.degrees(self.sector.width_rad):.0f}° at {turn:+.0f}°"
+        if self.verdict is Verdict.TAKEN:
+            return f"took {which} {self.reason}"
+        return f"{which} refused ({self.reason})" if self.verdict is Verdict.REJECTED else ""
 
 
 def _count(sectors: int) -> str:
     return f"{sectors or 'no'} free sector{'' if sectors == 1 else 's'}"
-
-
-def _is_near(place: GivenUp, pose: Pose2) -> bool:
-    x, y = place.position
-    return math.hypot(pose.x - x, pose.y - y) < _GIVEN_UP_RADIUS_M

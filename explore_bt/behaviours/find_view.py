@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.behaviours.give_up_goal import GivenUp
+from explore_bt.behaviours.marks import half_plane_marks, sector_mark
 from explore_bt.behaviours.search import HERE_M, Search
 from explore_bt.exploration import (
     HalfPlaneHistory,
@@ -28,7 +29,7 @@ from explore_bt.exploration import (
     visible_unknown_area,
 )
 from explore_bt.tree import Input, Key, Status
-from explore_bt.types import Pose2, Waypoint, wrap_angle
+from explore_bt.types import Drawing, Pose2, Verdict, ViewMark, Waypoint, wrap_angle
 from explore_bt.units import Length
 
 __all__ = ["FindView"]
@@ -36,6 +37,7 @@ __all__ = ["FindView"]
 _MARGIN_M = 0.02
 _TRIES = 20
 _SCRAP_M2 = 0.5
+_TOO_LITTLE = "shows too little to be worth the way"
 _ROOM_M = 3.0
 """So far around the robot all places count: coming back for a scrap costs more than to see it now."""
 
@@ -128,9 +130,10 @@ class FindView(Search):
                     break
                 run = self._best_run(chosen)
                 if math.dist(run[0].xy, self.here().xy) > HERE_M:
-                    return self._take(run, len(chosen.views))
+                    return self._take(run, chosen.views)
                 self._give_up_look(run[0].xy, run[0].gain_m2)
-        scraps = ((view.xy, "shows too little to be worth the way") for view in chosen.views)
+        self._draw_views((), chosen.views)
+        scraps = ((view.xy, _TOO_LITTLE) for view in chosen.views)
         reason = f"no reachable place shows {self.min_gain:.2f} m² of new area or more"
         return self.conclude(reason, (*self._still_unseen(), *scraps))
 
@@ -203,6 +206,8 @@ class FindView(Search):
             footprint_radius_m=self.robot.footprint_radius_m,
             margin_m=_MARGIN_M,
         )
+        marks = (sector_mark(self.here(), sector, self.detection_range) for sector in sectors)
+        self.robot.draw(Drawing(tuple(marks), half_plane_marks(self.history.last(1))))
         return [
             next_waypoint(self.here(), sector, self.stride).position for sector in order_by_safety(sectors)
         ]
@@ -215,17 +220,33 @@ class FindView(Search):
         behind = not self.history.contains(view.xy, 1)
         return turn + (self.half_plane_cost if behind else 0.0)
 
-    def _take(self, run: tuple[View, ...], count: int) -> Status:
+    def _take(self, run: tuple[View, ...], views: tuple[View, ...]) -> Status:
         *passed, last = run
         (x, y), before = last.xy, passed[-1].xy if passed else self.here().xy
         pose = Pose2(x, y, math.atan2(y - before[1], x - before[0]))
         self.goal = Waypoint(pose, "view", last.gain_m2, via=tuple(view.xy for view in passed))
+        self._draw_views(run, views)
         over = f" over {len(passed)} other{'' if len(passed) == 1 else 's'}" if passed else ""
         self.say(
-            f"{count} view{'' if count == 1 else 's'} to go; → ({x:.1f}, {y:.1f}){over}, "
+            f"{len(views)} view{'' if len(views) == 1 else 's'} to go; → ({x:.1f}, {y:.1f}){over}, "
             f"{last.travel_m:.1f} m away, {sum(view.gain_m2 for view in run):.1f} m² to see"
         )
         return Status.SUCCESS
+
+    def _draw_views(self, run: tuple[View, ...], views: Iterable[View]) -> None:
+        """The goal, what is passed on the way to it, the other views, and the places given up."""
+        marks = [self._view_mark(view, Verdict.TAKEN, "the next goal") for view in run[-1:]]
+        marks += [self._view_mark(view, Verdict.TAKEN, "passed on the way") for view in run[:-1]]
+        rest = (Verdict.OPEN, "") if run else (Verdict.REJECTED, _TOO_LITTLE)
+        marks += [self._view_mark(view, *rest) for view in views if view not in run]
+        for place in reversed(self.tried()):
+            x, y = place.position
+            marks.append(ViewMark(x, y, 0.0, place.gain_m2, Verdict.REJECTED, place.reason))
+        self.robot.draw(Drawing(views=tuple(marks)))
+
+    def _view_mark(self, view: View, state: Verdict, reason: str) -> ViewMark:
+        (x, y), here = view.xy, self.here()
+        return ViewMark(x, y, math.atan2(y - here.y, x - here.x), view.gain_m2, state, reason)
 
     def _note_look_in_vain(self) -> None:
         """The goal was come to and still shows enough for one: once left, it would call the robot back."""

@@ -41,6 +41,7 @@ class LeavePocket(Retrace):
         along = size[piece_of[rows, cols]]
         last = int(np.argmax(along))
         here = along[np.flatnonzero(along)[0]] if along.any() else 0
+        self._here_m2 = float(here) * view.grid.resolution_m**2
         self._is_pocket = bool(along[last] > _MORE * here)
         if self._is_pocket:
             track = track[: last + 1]
@@ -49,6 +50,6 @@ class LeavePocket(Retrace):
     def update(self) -> Status:
         """Until it is left."""
         if not self._is_pocket:
-            self.say("no larger piece of ground was ever driven on")
+            self.say(f"no larger piece of ground than this one of {self._here_m2:.1f} m² was ever driven on")
             return Status.FAILURE
         return self.watch()

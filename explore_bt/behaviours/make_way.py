@@ -67,8 +67,8 @@ class MakeWay(Leaf):
         self.robot.pilot.hold()
 
     def _is_needed(self) -> bool:
+        self.say("")  # if nobody is, this is no reason for anything
         if not someone_is_in_the_way(self.robot):
-            self.say("")  # then this is no reason for anything
             return False
         place, count = self._given
         count = count + 1 if math.dist(place, self.goal.position) < _SAME_M else 1

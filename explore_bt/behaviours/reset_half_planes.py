@@ -19,6 +19,7 @@ class ResetHalfPlanes(Leaf):
 
     def update(self) -> Status:
         """Write an empty history."""
+        count = len(self.recall("history", HalfPlaneHistory()).planes)
         self.history = HalfPlaneHistory()
-        self.say("half-planes reset")
+        self.say(f"{count} half-plane{'' if count == 1 else 's'} forgotten")
         return Status.SUCCESS

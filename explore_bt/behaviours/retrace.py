@@ -29,6 +29,8 @@ class Retrace(Leaf):
         """SUCCESS at its end, FAILURE if the safety gate holds the robot on it."""
         output = self.robot.pilot.output
         if output.status is ControlStatus.ARRIVED:
+            here = self.robot.estimate().T_map_base
+            self.say(f"back at ({here.x:.1f}, {here.y:.1f})")
             return Status.SUCCESS
         if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:
             self.say(f"held on the way back: {output.reason or self.robot.pilot.gate_reason}")

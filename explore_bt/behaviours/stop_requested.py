@@ -14,4 +14,6 @@ class StopRequested(Leaf):
 
     def update(self) -> Status:
         """Ask the flag."""
-        return Status.SUCCESS if self.robot.stop_requested else Status.FAILURE
+        is_raised = self.robot.stop_requested
+        self.say("the stop flag is raised" if is_raised else "")
+        return Status.SUCCESS if is_raised else Status.FAILURE

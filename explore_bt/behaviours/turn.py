@@ -32,6 +32,7 @@ class Turn(Leaf):
         """Until the controller says it has arrived."""
         output = self.robot.pilot.output
         if output.status is ControlStatus.ARRIVED:
+            self.say(f"turned by {math.degrees(self.by):.0f}°")
             return Status.SUCCESS
         if output.status is ControlStatus.STUCK:
             self.say(f"the turn does not get on: {output.reason}")

@@ -27,6 +27,7 @@ class WaitUntilLocalised(Leaf):
         """Ask for the health of the newest estimate."""
         estimate = self.robot.estimate()
         if estimate.health is not Health.LOST:
+            self.say("")
             return Status.SUCCESS
         waited_s = self.robot.now_s() - self._since_s
         self.say(f"SLAM is lost for {waited_s:.0f} s: {estimate.reason}")

@@ -9,6 +9,7 @@ import typer
 from explore_bt.cli.check import check
 from explore_bt.cli.convert import convert
 from explore_bt.cli.debug import debug
+from explore_bt.cli.export import export
 from explore_bt.cli.new_plugin import new_plugin
 from explore_bt.cli.plugins import plugins
 from explore_bt.cli.replay import replay
@@ -16,6 +17,7 @@ from explore_bt.cli.run import run
 from explore_bt.cli.schema import schema
 from explore_bt.cli.show import show
 from explore_bt.cli.slam import slam
+from explore_bt.cli.stats import stats
 from explore_bt.cli.world import world
 from explore_bt.version import __version__
 
@@ -70,6 +72,8 @@ app.command(epilog="Example: explore-bt check missions/mine.yaml --set clearance
 app.command(epilog="Example: explore-bt show 01_apartment --dot | dot -Tsvg -o tree.svg")(show)
 app.command(epilog="Example: explore-bt convert 01_apartment --xml --out apartment.xml")(convert)
 app.command(epilog="Example: explore-bt slam intel.clf.bz2 --out runs/intel --odometry")(slam)
+app.command(epilog="Example: explore-bt export runs/first --csv tables")(export)
+app.command(epilog="Example: explore-bt stats runs/* --never")(stats)
 app.command(epilog="Example: explore-bt world --kind apartment --seed 3 --out flat.yaml")(world)
 app.command(epilog="Example: explore-bt schema --out missions/schema.json")(schema)
 app.command(epilog="Example: explore-bt plugins --kind planner --options")(plugins)

@@ -8,7 +8,7 @@ import typer
 
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.human import count
-from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
+from explore_bt.cli.loading import MissionArgument, MockOption, SetOption, load_checked
 
 if TYPE_CHECKING:
     from explore_bt.mission import Mission
@@ -17,9 +17,9 @@ __all__ = ["check"]
 
 
 @guarded
-def check(mission: MissionArgument, set_: SetOption = None) -> None:
+def check(mission: MissionArgument, set_: SetOption = None, mock: MockOption = None) -> None:
     """Find every fault of a mission; no robot is needed."""
-    checked, _ = load_checked(mission, set_)
+    checked, _ = load_checked(mission, set_, mock)
     typer.echo(f"{checked.path} is fine: {_contents(checked)}")
 
 

@@ -22,7 +22,6 @@ from explore_bt.cli.driving import (
     VerboseOption,
     drive,
     exit_code,
-    make_sinks,
     show_result,
 )
 from explore_bt.cli.groot import GrootHostOption, GrootOption, GrootPortOption, groot_sinks
@@ -39,6 +38,7 @@ from explore_bt.cli.page_options import (
 )
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
+from explore_bt.cli.sinks import ALWAYS, make_sinks
 from explore_bt.cli.stopping import stopping_by_signal
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def debug(
     folder = new_run_folder(out, checked.path.stem)
     session = new_session(checked, registry, set_ or (), paused=not run_on)
     sinks = [
-        *make_sinks(registry, sink or ()),
+        *make_sinks(registry, [*ALWAYS, *(sink or ())]),
         *groot_sinks(groot, checked, session, groot_host, groot_port),
     ]
     with run_log(folder / "run.log", verbose=verbose):

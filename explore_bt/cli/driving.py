@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -27,7 +27,6 @@ __all__ = [
     "VerboseOption",
     "drive",
     "exit_code",
-    "make_sinks",
     "show_result",
 ]
 
@@ -39,22 +38,14 @@ OutOption = Annotated[
     typer.Option(metavar="DIR", help="Folder for the results, new or empty; else runs/<mission>-<time>."),
 ]
 SinkOption = Annotated[
-    list[str] | None, typer.Option("--sink", metavar="NAME", help="One more observer; may be repeated.")
+    list[str] | None,
+    typer.Option(
+        "--sink", metavar="NAME", help="One more observer (foxglove, or rerun,to=file); may be repeated."
+    ),
 ]
 VerboseOption = Annotated[bool, typer.Option("-v", "--verbose", help="Show the log.")]
 
 GETTING_READY = "getting ready (the first time takes longer, it compiles)"
-
-
-def make_sinks(registry: Registry, names: Iterable[str]) -> list[Sink]:
-    """A recorder, a report, and the sinks of these names; each once.
-
-    Raises:
-        UserError: there is no such sink.
-    """
-    every = dict.fromkeys(("mcap", "report", *names))
-    classes: list[type[Sink]] = [registry.get("sink", name) for name in every]
-    return [sink(sink.Options()) for sink in classes]
 
 
 def drive(

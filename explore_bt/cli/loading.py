@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from explore_bt.mission import Mission
     from explore_bt.plugin import Host, Registry
 
-__all__ = ["MissionArgument", "SetOption", "load_checked"]
+__all__ = ["MissionArgument", "MockOption", "SetOption", "load_checked"]
 
 MissionArgument = Annotated[
     str, typer.Argument(metavar="MISSION", help="A mission file, or the name of a shipped mission.")
@@ -25,21 +26,31 @@ SetOption = Annotated[
 ]
 
 
-def load_checked(mission: str, settings: Sequence[str] | None) -> tuple[Mission, Registry]:
+MockOption = Annotated[
+    Path | None,
+    typer.Option("--mock", metavar="FILE", help="Dry run: scripts play the leaves that this file names."),
+]
+
+
+def load_checked(
+    mission: str, settings: Sequence[str] | None, mocks: Path | None = None
+) -> tuple[Mission, Registry]:
     """Find the mission, load the plugins and the file beside it, check everything.
 
     Raises:
-        UserError: no such mission, a broken inline plugin, or the mission's faults, all of them.
+        UserError: no such mission, a broken inline plugin, or the faults of the mission or the mock file, all
+            of them.
     """
     path = find_mission(mission)
-    from explore_bt.mission import load_mission
+    from explore_bt.mission import load_mission, with_mocks
     from explore_bt.plugin import load_plugins
 
     host = load_plugins(inline_dir=path.parent)
     try:
-        return load_mission(path, host.registry, settings or ()), host.registry
+        checked = load_mission(path, host.registry, settings or ())
     except MissionError as faulty:
         raise MissionError(str(faulty) + _left_out(faulty, host), faulty.faults) from None
+    return (checked if mocks is None else with_mocks(checked, mocks)), host.registry
 
 
 def _left_out(faulty: MissionError, host: Host) -> str:

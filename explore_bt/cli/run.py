@@ -15,14 +15,14 @@ from explore_bt.cli.driving import (
     VerboseOption,
     drive,
     exit_code,
-    make_sinks,
     show_result,
 )
 from explore_bt.cli.groot import GrootHostOption, GrootOption, GrootPortOption, groot_sinks
 from explore_bt.cli.guard import guarded
-from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
+from explore_bt.cli.loading import MissionArgument, MockOption, SetOption, load_checked
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
+from explore_bt.cli.sinks import ALWAYS, make_sinks
 from explore_bt.cli.stopping import stopping_by_signal
 
 __all__ = ["run"]
@@ -41,6 +41,7 @@ def run(
     groot: GrootOption = False,
     groot_port: GrootPortOption = 1667,
     groot_host: GrootHostOption = "127.0.0.1",
+    mock: MockOption = None,
     verbose: VerboseOption = False,
 ) -> None:
     """Run a mission; map, recording and report land in a folder.
@@ -48,10 +49,10 @@ def run(
     Exit code: 0 explored, 1 failed or budget spent, 2 wrong input, 130 stopped by hand.
     Ctrl-C stops the robot safely and saves the results.
     """
-    checked, registry = load_checked(mission, set_)
+    checked, registry = load_checked(mission, set_, mock)
     folder = new_run_folder(out, checked.path.stem)
     live = "terminal" if not headless and sys.stdout.isatty() else "progress"
-    sinks = make_sinks(registry, [live, *(sink or ())])
+    sinks = make_sinks(registry, [*ALWAYS, live, *(sink or ())])
     session = None
     if groot:
         from explore_bt.debug import DebugSession

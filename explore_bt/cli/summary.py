@@ -21,6 +21,8 @@ _FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", _RECORDI
 def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:
     """Label and text of each line; figures that nobody knows are left out."""
     lines = [(str(result.outcome), " · ".join(_figures(result)))]
+    if result.mocked:
+        lines.append(("dry run", f"leaves that a script played: {len(result.mocked)}; no figure counts"))
     lines += [("reason", result.reason)] if result.reason else []
     lines += [("left open", sentence) for sentence in _first(result.left_open)]
     lines += [(label, str(path)) for label, name in _FILES for path in _files(folder, name)]

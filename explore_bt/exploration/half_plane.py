@@ -33,10 +33,14 @@ class HalfPlane:
         """The half-plane in front of a robot at this pose."""
         return HalfPlane(pose.xy, pose.yaw_rad)
 
-    def contains(self, xy: tuple[float, float]) -> bool:
-        """Whether (p − p^k) · (cos r, sin r) ≥ 0 for a point in metres."""
+    def ahead_m(self, xy: tuple[float, float]) -> float:
+        """(p − p^k) · (cos r, sin r) for a point in metres: how far ahead of the line it lies."""
         dx, dy = xy[0] - self.position[0], xy[1] - self.position[1]
-        return dx * math.cos(self.heading_rad) + dy * math.sin(self.heading_rad) >= -_ON_THE_LINE_M
+        return dx * math.cos(self.heading_rad) + dy * math.sin(self.heading_rad)
+
+    def contains(self, xy: tuple[float, float]) -> bool:
+        """Whether a point in metres lies ahead of the line, or on it."""
+        return self.ahead_m(xy) >= -_ON_THE_LINE_M
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,4 +70,8 @@ class HalfPlaneHistory:
 
     def contains(self, xy: tuple[float, float], window: int | None = None) -> bool:
         """Whether a point in metres lies in H_{k−L+1}^k, the intersection of the newest L half-planes."""
-        return all(plane.contains(xy) for plane in self.last(window))
+        return self.broken_by(xy, window) is None
+
+    def broken_by(self, xy: tuple[float, float], window: int | None = None) -> HalfPlane | None:
+        """The newest of them that a point in metres does not lie in; None if it lies in all."""
+        return next((plane for plane in reversed(self.last(window)) if not plane.contains(xy)), None)

@@ -12,7 +12,17 @@ from explore_bt.headless.grid_pilot import GridPilot
 from explore_bt.interfaces import MapMemory, MapView, Planner
 from explore_bt.runtime.legs import plan_through
 from explore_bt.runtime.tight_places import TightPlaces
-from explore_bt.types import Budget, Estimate, MovingObstacle, OccupancyGrid, Path, Pose2, Scan2D, Trajectory
+from explore_bt.types import (
+    Budget,
+    Drawing,
+    Estimate,
+    MovingObstacle,
+    OccupancyGrid,
+    Path,
+    Pose2,
+    Scan2D,
+    Trajectory,
+)
 
 __all__ = ["GridRobot"]
 
@@ -100,6 +110,9 @@ class GridRobot:
         return plan_through(
             lambda start, end: self._planner.plan(grid, start, end, radius_m), self._pose, via, goal
         )
+
+    def draw(self, drawing: Drawing) -> None:
+        """Nobody looks on."""
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place where the caller got no farther."""

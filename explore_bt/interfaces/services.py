@@ -15,6 +15,7 @@ from explore_bt.interfaces.controller import ControlOutput
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.types import (
     Budget,
+    Drawing,
     Estimate,
     MovingObstacle,
     OccupancyGrid,
@@ -141,6 +142,9 @@ class RobotServices(Protocol):
 
         It passes the places of ``via`` in their order, but those that no way leads over.
         """
+
+    def draw(self, drawing: Drawing) -> None:
+        """Show observers what a leaf looked at when it decided; layers of one tick lie over one another."""
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place (x, y, metres, ``map`` frame) that proved too tight: plans and maps shun it."""

@@ -7,7 +7,19 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 
 from explore_bt.interfaces.held_by import HeldBy
-from explore_bt.types import Estimate, Measurement, MotionState, OccupancyGrid, Path, Pose2, Scan2D, Score
+from explore_bt.types import (
+    Budget,
+    Drawing,
+    Estimate,
+    Measurement,
+    MotionState,
+    MovingObstacle,
+    OccupancyGrid,
+    Path,
+    Pose2,
+    Scan2D,
+    Score,
+)
 
 __all__ = ["Event", "NodeInfo", "NodeState", "PortInfo", "RobotSnapshot", "RunInfo", "TickSnapshot"]
 
@@ -35,6 +47,7 @@ class NodeInfo:
         path: unique, from the root: ``complete/explore/find_next_heading``.
         type: the YAML key (``sequence``, ``find_next_heading``).
         place: ``file:line:column`` in the mission.
+        is_mocked: whether a script plays in the leaf's place.
     """
 
     id: int
@@ -44,6 +57,7 @@ class NodeInfo:
     parent: int | None
     place: str
     ports: tuple[PortInfo, ...] = ()
+    is_mocked: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +66,14 @@ class NodeState:
 
     Attributes:
         ticks: how often it was ticked in this tick of the tree; 0 leaves an older status standing.
+        successes, failures: how often it ended so in this tick of the tree.
     """
 
     status: str
     message: str
     ticks: int = field(default=0, compare=False)
+    successes: int = field(default=0, compare=False)
+    failures: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,6 +106,10 @@ class RobotSnapshot:
         held_by: what kind of reason that is.
         true_pose: where the driver knows it.
         measured: what SLAM was given since the tick before, in this order.
+        moving: what moves around the robot, as the newest scan tells.
+        budgets: what of time, distance and battery the mission allows still.
+        charge: of the battery, a share; None where nobody measures it.
+        drawing: what the leaves saw in the last tick in which any of them decided; the same object till then.
     """
 
     robot: str
@@ -104,6 +125,10 @@ class RobotSnapshot:
     true_pose: Pose2 | None = None
     measured: tuple[Measurement, ...] = ()
     held_by: HeldBy = HeldBy.NOTHING
+    drawing: Drawing = Drawing()
+    moving: tuple[MovingObstacle, ...] = ()
+    budgets: tuple[Budget, ...] = ()
+    charge: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,7 +142,11 @@ class TickSnapshot:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something worth a line: ``level`` is ``info``, ``warning`` or ``error``."""
+    """Something worth a line: ``level`` is ``debug``, ``info``, ``warning`` or ``error``.
+
+    Sources: ``recovery``, ``safety gate``, ``slam``, ``tight place``, ``mission``, a plugin
+    (``planner skeleton``) or, at level ``debug``, the path of the leaf that speaks.
+    """
 
     stamp_s: float
     robot: str

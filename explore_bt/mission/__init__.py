@@ -7,6 +7,7 @@ from explore_bt.mission.draw_dot import show_dot
 from explore_bt.mission.draw_text import show_text
 from explore_bt.mission.limits import LimitsSpec
 from explore_bt.mission.load import load_mission, load_tree
+from explore_bt.mission.mocks import with_mocks
 from explore_bt.mission.model import Mission, PluginChoice, RobotSpec
 from explore_bt.mission.nodes import CONTROL_NODES, MODIFIERS, Condition, Modifiers, NodeSpec
 from explore_bt.mission.schema import mission_schema
@@ -33,4 +34,5 @@ __all__ = [
     "mission_schema",
     "show_dot",
     "show_text",
+    "with_mocks",
 ]

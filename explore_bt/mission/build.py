@@ -23,6 +23,7 @@ from explore_bt.tree import (
     Invert,
     Key,
     Leaf,
+    MockedLeaf,
     OnFailure,
     Parallel,
     ReactiveFallback,
@@ -83,6 +84,7 @@ def build_tree(spec: NodeSpec, robot: RobotServices, blackboard: Blackboard) -> 
             ids[id(node.parent)] if node.parent is not None else None,
             str(builder.known[id(node)].place),
             _ports(node) if isinstance(node, Leaf) else (),
+            isinstance(node, MockedLeaf),
         )
         for index, node in enumerate(nodes)
     )

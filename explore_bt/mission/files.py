@@ -12,9 +12,10 @@ from explore_bt.mission.reading import check_keys, expect_entries, expect_items,
 from explore_bt.mission.source import Place, Source
 from explore_bt.mission.words import did_you_mean
 
-__all__ = ["FORMAT", "INCLUDE_KEYS", "MISSION_KEYS", "MissionText", "read_files", "read_text"]
+__all__ = ["FORMAT", "INCLUDE_KEYS", "MISSION_KEYS", "MissionText", "read_files", "read_mapping", "read_text"]
 
 FORMAT = "explore-bt/1"
+_HINT = f"begin with format: {FORMAT}"
 MISSION_KEYS = (
     "format",
     "name",
@@ -57,25 +58,39 @@ def read_files(path: Path, faults: Faults, known: tuple[str, ...] = MISSION_KEYS
         faults: what is wrong with it is noted here.
         known: the keys it may hold; ``INCLUDE_KEYS`` for a file of trees.
     """
-    head = Source(str(path), "", path.parent, has_lines=False)
-    text = read_text(path, head.place(), "the mission", faults)
-    if text is None:
+    file = read_mapping(path, "the mission", _HINT, faults)
+    if file is None:
         return None
-    source = Source(str(path), text, path.parent)
-    root = _mapping(source, faults)
-    if root is None:
-        return None
+    source, root = file
     mission = MissionText(source, root)
     _Collector(mission, path, faults).collect(root, known, (Path(os.path.realpath(path)),))
     return mission
 
 
-def _mapping(source: Source, faults: Faults) -> Entries | None:
+def read_mapping(path: Path, shown: str, hint: str, faults: Faults) -> tuple[Source, Entries] | None:
+    """A file that has to be a mapping; None with the fault noted if it is none.
+
+    Args:
+        path: the file.
+        shown: what it is to people.
+        hint: what to do if it is something else.
+        faults: what is wrong with it is noted here.
+    """
+    head = Source(str(path), "", path.parent, has_lines=False)
+    text = read_text(path, head.place(), shown, faults)
+    if text is None:
+        return None
+    source = Source(str(path), text, path.parent)
+    root = _mapping(source, shown, hint, faults)
+    return None if root is None else (source, root)
+
+
+def _mapping(source: Source, shown: str, hint: str, faults: Faults) -> Entries | None:
     value = parse_document(source, faults)
     if value is None or isinstance(value, Entries):
         return value
     found = "empty" if isinstance(value, Scalar) and value.data is None else written(value)
-    faults.add(source.place(), f"a mission is a mapping; this is {found}", f"begin with format: {FORMAT}")
+    faults.add(source.place(), f"{shown.replace('the ', 'a ', 1)} is a mapping; this is {found}", hint)
     return None
 
 
@@ -171,7 +186,7 @@ class _Collector:
         shown = os.path.join(os.path.dirname(value.place.source.name), value.data)
         source = Source(os.path.normpath(shown), text, named.parent)
         self._mission.included[real] = source
-        root = _mapping(source, self._faults)
+        root = _mapping(source, "the mission", _HINT, self._faults)
         if root is None:
             return False
         self.collect(root, INCLUDE_KEYS, (*way, real))

@@ -14,11 +14,16 @@ from explore_bt.recording.message_log import LoggedMessage, MessageLog
 from explore_bt.recording.reader import RecordedMessage, Recording, RecordingError, read_recording
 from explore_bt.recording.robot_track import Periods, RobotTrack
 from explore_bt.recording.run_state import NodeNow, RobotState, followed_topics, state_at
+from explore_bt.recording.schemas import schema_text
 from explore_bt.recording.timeline import Timeline
-from explore_bt.recording.topics import TOPICS, Topic
+from explore_bt.recording.topics import ROBOT_TOPICS, RUN_TOPICS, TOPICS, Topic
+from explore_bt.recording.tree_statistics import NodeStatistics, TreeStatistics, tree_statistics
+from explore_bt.recording.tree_tally import NodeTally, TreeTally
 from explore_bt.recording.values import to_json
 
 __all__ = [
+    "ROBOT_TOPICS",
+    "RUN_TOPICS",
     "SINKS",
     "STATUS_BYTES",
     "TOPICS",
@@ -27,6 +32,8 @@ __all__ = [
     "McapRecorderOptions",
     "MessageLog",
     "NodeNow",
+    "NodeStatistics",
+    "NodeTally",
     "Periods",
     "RecordedMessage",
     "Recording",
@@ -35,6 +42,8 @@ __all__ = [
     "RobotTrack",
     "Timeline",
     "Topic",
+    "TreeStatistics",
+    "TreeTally",
     "btlog",
     "decode_grid",
     "decode_measurements",
@@ -44,10 +53,12 @@ __all__ = [
     "read_recording",
     "result_message",
     "run_message",
+    "schema_text",
     "stamp_ns",
     "state_at",
     "to_json",
     "transition_record",
+    "tree_statistics",
 ]
 
 SINKS = (McapRecorder,)

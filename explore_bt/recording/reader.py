@@ -81,15 +81,22 @@ class Recording:
         return tuple(self.info.get("trees", {}))
 
     def messages(
-        self, topic: str | None = None, start_s: float = 0.0, end_s: float = float("inf")
+        self, topic: str | Collection[str] | None = None, start_s: float = 0.0, end_s: float = float("inf")
     ) -> Iterator[RecordedMessage]:
-        """Messages of one topic (None: of all) with ``start_s <= stamp <= end_s``, in file order."""
+        """Messages of one topic, of several, or of all (None), in file order.
+
+        Args:
+            topic: which.
+            start_s: the first stamp that counts, mission time.
+            end_s: the last one.
+        """
+        wanted = {topic} if isinstance(topic, str) else topic
         for chunk in self._chunks:
             if chunk.message_end_time * 1e-9 < start_s or chunk.message_start_time * 1e-9 > end_s:
                 continue
             for name, record in self._records(chunk):
                 stamp_s = record.log_time * 1e-9
-                if topic in (None, name) and start_s <= stamp_s <= end_s:
+                if (wanted is None or name in wanted) and start_s <= stamp_s <= end_s:
                     yield RecordedMessage(name, stamp_s, json.loads(record.data))
 
     def log(self, topics: Collection[str]) -> MessageLog:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 
-from explore_bt.interfaces import NodeState, RobotSnapshot
+from explore_bt.interfaces import HeldBy, NodeState, RobotSnapshot
+from explore_bt.recording.drawing import drawing_message
 from explore_bt.recording.foxglove import (
     grid_message,
     path_message,
@@ -18,16 +19,21 @@ from explore_bt.recording.foxglove import (
     time_json,
 )
 from explore_bt.recording.measurements import measurements_message
+from explore_bt.recording.moving import moving_message
+from explore_bt.recording.tree_tally import NodeTally, TreeTally
 from explore_bt.recording.values import to_json
 from explore_bt.types import (
+    Drawing,
     Health,
     Imu,
     Measurement,
+    MovingObstacle,
     OccupancyGrid,
     Path,
     PointCloud,
     Pose2,
     Scan2D,
+    Score,
     Waypoint,
     WheelOdometry,
 )
@@ -37,6 +43,8 @@ __all__ = ["Periods", "RobotTrack"]
 _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), allow_nan=False).encode
 _CELLS_PER_SECOND = 40_000  # of map, so that a large building cannot fill the disk
 _SECOND_NS = 1_000_000_000
+_COUNT_PERIOD_NS = 10 * _SECOND_NS
+_SCORES = tuple(each.name for each in fields(Score))
 _NOTHING = object()
 
 
@@ -49,6 +57,7 @@ class Periods:
     map: int
     path: int = _SECOND_NS // 2
     state: int = _SECOND_NS // 2
+    moving: int = _SECOND_NS // 4
 
 
 class _Throttle:
@@ -91,20 +100,26 @@ class RobotTrack:
         self._grid_written: OccupancyGrid | None = None
         self._path: object = _NOTHING
         self._gate_reason = ""
+        self._drawing = Drawing()
+        self._moving_told: tuple[MovingObstacle, ...] = ()
+        self._tally, self._count_due = TreeTally(), _Throttle(_COUNT_PERIOD_NS)
         self._tree_due, self._board_due = _Throttle(periods.key_frame), _Throttle(periods.key_frame)
         self._scan_due, self._map_due = _Throttle(periods.scan), _Throttle(periods.map)
         self._path_due, self._state_due = _Throttle(periods.path), _Throttle(periods.state)
-        self._pose_due = _Throttle(_SECOND_NS)
+        self._pose_due, self._moving_due = _Throttle(_SECOND_NS), _Throttle(periods.moving)
 
     def on_tick(self, time_ns: int, tick: int, robot: RobotSnapshot) -> None:
         """Write what this tick has changed."""
         self._tree(time_ns, tick, robot.nodes)
+        self._count(time_ns, robot.nodes)
         self._blackboard(time_ns, robot.blackboard)
         self._waypoints(time_ns, robot.blackboard)
         self._poses(time_ns, robot)
         self._sensing(time_ns, robot)
         self._plan(time_ns, robot.path)
-        self._gate(time_ns, robot.gate_reason)
+        self._gate(time_ns, robot)
+        self._moving(time_ns, robot.moving)
+        self._draw(time_ns, robot.drawing)
         self._measured += [each for each in robot.measured if isinstance(each, self._kinds)]
 
     def write_measurements(self, time_ns: int) -> None:
@@ -114,7 +129,8 @@ class RobotTrack:
             self._measured = []
 
     def close(self, time_ns: int) -> None:
-        """Write what was held back: the last measurements, the last map."""
+        """Write what was held back: the last counts, the last measurements, the last map."""
+        self._write_counts(time_ns)
         self.write_measurements(time_ns)
         self._map(time_ns)
 
@@ -139,6 +155,18 @@ class RobotTrack:
         )
         head = f'{{"timestamp":{time_json(time_ns)},"tick":{tick},"key_frame":{_flag(key_frame)}'
         self._write(self._topic + "tree", time_ns, f'{head},"nodes":[{states}]}}')
+
+    def _count(self, time_ns: int, nodes: tuple[NodeState, ...]) -> None:
+        self._tally.on_tick(time_ns / _SECOND_NS, nodes)
+        if self._count_due.ready(time_ns):
+            self._count_due.passed(time_ns)
+            self._write_counts(time_ns)
+
+    def _write_counts(self, time_ns: int) -> None:
+        if self._tally.nodes:
+            counts = ",".join(_tally(index, node) for index, node in enumerate(self._tally.nodes))
+            text = f'{{"timestamp":{time_json(time_ns)},"nodes":[{counts}]}}'
+            self._write(self._topic + "nodes", time_ns, text)
 
     def _blackboard(self, time_ns: int, board: Mapping[str, object]) -> None:
         differences: dict[str, str] = {}
@@ -224,15 +252,37 @@ class RobotTrack:
             self._path_due.passed(time_ns)
             self._write(self._topic + "path", time_ns, path_message(time_ns, path))
 
-    def _gate(self, time_ns: int, reason: str) -> None:
+    def _gate(self, time_ns: int, robot: RobotSnapshot) -> None:
+        reason = robot.gate_reason
         if reason != self._gate_reason:
             self._gate_reason = reason
             head = f'{{"timestamp":{time_json(time_ns)},"braking":{_flag(bool(reason))}'
-            self._write(self._topic + "gate", time_ns, f'{head},"reason":{quote(reason)}}}')
+            held_by = quote(robot.held_by if reason else HeldBy.NOTHING)
+            self._write(
+                self._topic + "gate", time_ns, f'{head},"reason":{quote(reason)},"held_by":{held_by}}}'
+            )
+
+    def _moving(self, time_ns: int, moving: tuple[MovingObstacle, ...]) -> None:
+        if moving != self._moving_told and self._moving_due.ready(time_ns):
+            self._moving_told = moving
+            self._moving_due.passed(time_ns)
+            self._write(self._topic + "moving", time_ns, moving_message(time_ns, moving))
+
+    def _draw(self, time_ns: int, drawing: Drawing) -> None:
+        if drawing is not self._drawing and drawing != self._drawing:
+            self._write(self._topic + "drawing", time_ns, drawing_message(time_ns, drawing))
+        self._drawing = drawing
 
 
 def _flag(value: bool) -> str:
     return "true" if value else "false"
+
+
+def _tally(index: int, node: NodeTally) -> str:
+    return (
+        f'{{"id":{index},"ticks":{node.ticks},"successes":{node.successes},"failures":{node.failures},'
+        f'"cut_off":{node.cut_off},"running_s":{node.running_s:.3f},"longest_s":{node.longest_s:.3f}}}'
+    )
 
 
 def _state(time_ns: int, robot: RobotSnapshot) -> str:
@@ -241,6 +291,10 @@ def _state(time_ns: int, robot: RobotSnapshot) -> str:
         "turn_rate_rps": robot.motion.twist.angular_rps,
         "health": robot.estimate.health,
         "health_reason": robot.estimate.reason,
-        **asdict(robot.score),
+        "held_by": robot.held_by if robot.gate_reason else HeldBy.NOTHING,
+        "moving": len(robot.moving),
+        "charge": robot.charge,
+        "left": {budget.name: budget.left for budget in robot.budgets},
+        **{name: getattr(robot.score, name) for name in _SCORES},
     }
     return f'{{"timestamp":{time_json(time_ns)},{_encode(to_json(figures))[1:]}'

@@ -51,6 +51,43 @@ _CLOUD = _object(
     points=_BYTES,
     times=_BYTES,
 )
+_VERDICT: _Schema = {"type": "string", "enum": ["taken", "rejected", "open"]}
+_LAYERS = _object(
+    sectors=_array(
+        _object(
+            x=_NUMBER,
+            y=_NUMBER,
+            from_rad=_NUMBER,
+            to_rad=_NUMBER,
+            range_m=_NUMBER,
+            state=_VERDICT,
+            reason=_TEXT,
+        )
+    ),
+    half_planes=_array(_object(x=_NUMBER, y=_NUMBER, normal_x=_NUMBER, normal_y=_NUMBER)),
+    frontiers=_array(_object(x=_NUMBER, y=_NUMBER, size_m=_NUMBER, state=_VERDICT, reason=_TEXT)),
+    views=_array(
+        _object(x=_NUMBER, y=_NUMBER, yaw_rad=_NUMBER, gain_m2=_NUMBER, state=_VERDICT, reason=_TEXT)
+    ),
+)
+_THING = _object(
+    number=_INTEGER,
+    x=_NUMBER,
+    y=_NUMBER,
+    vx_mps=_NUMBER,
+    vy_mps=_NUMBER,
+    radius_m=_NUMBER,
+    seen_s=_NUMBER,
+)
+_TALLY = _object(
+    id=_INTEGER,
+    ticks=_INTEGER,
+    successes=_INTEGER,
+    failures=_INTEGER,
+    cut_off=_INTEGER,
+    running_s=_NUMBER,
+    longest_s=_NUMBER,
+)
 _NODE_STATE = _object(id=_INTEGER, status=_TEXT, message=_TEXT)
 _NODE = _object(
     id=_INTEGER,
@@ -60,6 +97,7 @@ _NODE = _object(
     parent={"type": ["integer", "null"]},
     place=_TEXT,
     ports=_array(_object(name=_TEXT, bound=_TEXT, is_output=_FLAG)),
+    is_mocked=_FLAG,
 )
 
 _SCHEMAS: Mapping[str, _Schema] = {
@@ -102,14 +140,21 @@ _SCHEMAS: Mapping[str, _Schema] = {
         trees={"type": "object", "additionalProperties": _array(_NODE)},
     ),
     "explore_bt.Tree": _object(timestamp=_TIME, tick=_INTEGER, key_frame=_FLAG, nodes=_array(_NODE_STATE)),
+    "explore_bt.NodeTallies": _object(timestamp=_TIME, nodes=_array(_TALLY)),
     "explore_bt.Blackboard": _object(timestamp=_TIME, key_frame=_FLAG, set=_ANY, removed=_array(_TEXT)),
-    "explore_bt.Gate": _object(timestamp=_TIME, braking=_FLAG, reason=_TEXT),
+    "explore_bt.Gate": _object(timestamp=_TIME, braking=_FLAG, reason=_TEXT, held_by=_TEXT),
+    "explore_bt.Moving": _object(timestamp=_TIME, things=_array(_THING)),
+    "explore_bt.Drawing": _object(timestamp=_TIME, layers=_LAYERS, left_out=_ANY),
     "explore_bt.State": _object(
         timestamp=_TIME,
         speed_mps=_NUMBER,
         turn_rate_rps=_NUMBER,
         health=_TEXT,
         health_reason=_TEXT,
+        held_by=_TEXT,
+        moving=_INTEGER,
+        charge=_MAYBE,
+        left=_ANY,
         distance_m=_NUMBER,
         coverage=_MAYBE,
         contacts=_MAYBE,

@@ -30,6 +30,7 @@ RUN_TOPICS = (
 )
 ROBOT_TOPICS = (
     Topic("/<robot>/tree", "explore_bt.Tree", "on change, key frame every 5 s"),
+    Topic("/<robot>/nodes", "explore_bt.NodeTallies", "every 10 s, and at the end"),
     Topic("/<robot>/blackboard", "explore_bt.Blackboard", "on change, key frame every 5 s"),
     Topic("/<robot>/pose", "foxglove.PoseInFrame", "every tick while it moves, else 1 Hz"),
     Topic("/<robot>/truth", "foxglove.PoseInFrame", "2 Hz, where the driver knows it"),
@@ -41,5 +42,7 @@ ROBOT_TOPICS = (
     Topic("/<robot>/waypoint", "foxglove.PoseInFrame", "on change"),
     Topic("/<robot>/visited", "foxglove.PoseInFrame", "one message for each waypoint"),
     Topic("/<robot>/gate", "explore_bt.Gate", "on change"),
+    Topic("/<robot>/moving", "explore_bt.Moving", "on change, at most 4 Hz"),
+    Topic("/<robot>/drawing", "explore_bt.Drawing", "on change: whenever a leaf has looked about"),
 )
 TOPICS = RUN_TOPICS + ROBOT_TOPICS

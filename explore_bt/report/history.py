@@ -4,38 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.exploration.clearance import clearance_field
-from explore_bt.interfaces import NodeInfo, NodeState, RobotSnapshot
+from explore_bt.interfaces import HeldBy, NodeInfo, RobotSnapshot
+from explore_bt.recording import TreeTally
 from explore_bt.report.first_seen import FirstSeen
 from explore_bt.types import OccupancyGrid, Waypoint
 
-__all__ = ["Intervention", "NodeUse", "RobotHistory", "TimedWaypoint", "Track", "clearance_range_m"]
+__all__ = ["Intervention", "RobotHistory", "TimedWaypoint", "Track", "clearance_range_m"]
 
 _MAP_PERIOD_S = 1.0
+_CALM_S = 1.0
 
 
 @dataclass(slots=True)
 class Intervention:
-    """One stretch of time in which the safety gate was braking."""
+    """A stretch of time in which the safety gate braked; breaks of less than a second belong to it."""
 
     begin_s: float
     end_s: float
     reason: str
-
-
-@dataclass(slots=True)
-class NodeUse:
-    """How long a node was running, and how often it came to an end with something new to say."""
-
-    running_s: float = 0.0
-    successes: int = 0
-    failures: int = 0
-    was_ticked: bool = False
+    held_by: HeldBy
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +48,7 @@ class Track:
         poses: (N, 3) float64 x, y (m), yaw (rad), ``map`` frame, finite.
         clearance_m: (N,) float64 from the robot's centre; NaN where nobody knows.
         distance_m, speed_mps: (N,) float64.
-        coverage: (N,) float64 share; NaN where nobody knows.
+        coverage, charge: (N,) float64 shares, of the floor and of the battery; NaN where nobody knows.
     """
 
     stamps_s: NDArray[np.float64]
@@ -64,6 +57,7 @@ class Track:
     distance_m: NDArray[np.float64]
     speed_mps: NDArray[np.float64]
     coverage: NDArray[np.float64]
+    charge: NDArray[np.float64]
 
     def thinned(self, most: int) -> Track:
         """At most ``most`` samples, first and last among them."""
@@ -71,8 +65,8 @@ class Track:
         if count <= most:
             return self
         kept = np.unique(np.linspace(0, count - 1, most).round().astype(np.int64))
-        columns = (self.poses, self.clearance_m, self.distance_m, self.speed_mps, self.coverage)
-        return Track(self.stamps_s[kept], *(column[kept] for column in columns))
+        columns = (getattr(self, each.name)[kept] for each in fields(self))
+        return Track(*columns)
 
 
 @dataclass(slots=True)
@@ -81,7 +75,8 @@ class RobotHistory:
 
     Attributes:
         nodes: the robot's tree.
-        node_uses: for each node of the tree, what it did.
+        most_moving: how many people and other things that move were seen at once.
+        tally: for each node of the tree, what it did.
     """
 
     name: str
@@ -90,22 +85,20 @@ class RobotHistory:
     grid: OccupancyGrid | None = None
     interventions: list[Intervention] = field(default_factory=list)
     waypoints: list[TimedWaypoint] = field(default_factory=list)
-    node_uses: list[NodeUse] = field(default_factory=list)
+    most_moving: int = 0
+    tally: TreeTally = field(default_factory=TreeTally)
     first_seen: FirstSeen = field(default_factory=FirstSeen)
     _rows: list[tuple[float, ...]] = field(default_factory=list)
     _visited: tuple[object, ...] = ()
     _map_due_s: float = -math.inf
-    _is_braking: bool = False
-    _states: tuple[NodeState, ...] = ()
-    _last_s: float = 0.0
 
     def on_tick(self, stamp_s: float, robot: RobotSnapshot) -> None:
         """Take in one tick."""
         self._sample(stamp_s, robot)
         self._map(stamp_s, robot.grid)
-        self._gate(stamp_s, robot.gate_reason)
+        self._gate(stamp_s, robot)
         self._waypoints(stamp_s, robot.blackboard.get("visited"))
-        self._use(stamp_s, robot.nodes)
+        self.tally.on_tick(stamp_s, robot.nodes)
 
     def finish(self) -> None:
         """Take in the last map, which may have come between two looks."""
@@ -114,35 +107,21 @@ class RobotHistory:
 
     def track(self) -> Track:
         """The drive so far; clearance is taken from the map where the driver doesn't know it."""
-        table = np.array(self._rows, dtype=np.float64).reshape(-1, 8)
+        table = np.array(self._rows, dtype=np.float64).reshape(-1, 9)
         table = table[np.isfinite(table[:, :4]).all(axis=1)]
         clearance = table[:, 4]
         if self.grid is not None and len(table) and np.isnan(clearance).all():
             clearance = _clearance_on(self.grid, table[:, 1:3])
-        return Track(table[:, 0], table[:, 1:4], clearance, table[:, 5], table[:, 6], table[:, 7])
-
-    def _use(self, stamp_s: float, states: tuple[NodeState, ...]) -> None:
-        if len(self._states) != len(states):
-            self._states = (NodeState("idle", ""),) * len(states)
-            self.node_uses, self._last_s = [NodeUse() for _ in states], stamp_s
-        elapsed_s, self._last_s = stamp_s - self._last_s, stamp_s
-        for use, old, new in zip(self.node_uses, self._states, states, strict=True):
-            if new.status == "running":
-                use.running_s += elapsed_s
-                use.was_ticked = True
-            elif new is not old and new != old:  # a node that is passed over keeps its last state
-                use.successes += new.status == "success"
-                use.failures += new.status == "failure"
-                use.was_ticked |= new.status != "idle"
-        self._states = states
+        return Track(table[:, 0], table[:, 1:4], clearance, *table[:, 5:].T)
 
     def _sample(self, stamp_s: float, robot: RobotSnapshot) -> None:
         pose, score = robot.estimate.T_map_base, robot.score
         clearance = math.nan if score.clearance_m is None else score.clearance_m
         coverage = math.nan if score.coverage is None else score.coverage
         speed = robot.motion.twist.linear_mps
+        charge = math.nan if robot.charge is None else robot.charge
         self._rows.append(
-            (stamp_s, pose.x, pose.y, pose.yaw_rad, clearance, score.distance_m, speed, coverage)
+            (stamp_s, pose.x, pose.y, pose.yaw_rad, clearance, score.distance_m, speed, coverage, charge)
         )
 
     def _map(self, stamp_s: float, grid: OccupancyGrid) -> None:
@@ -151,12 +130,14 @@ class RobotHistory:
             self.first_seen.note(stamp_s, grid)
         self.grid = grid
 
-    def _gate(self, stamp_s: float, reason: str) -> None:
-        if reason and self._is_braking:
-            self.interventions[-1].end_s = stamp_s
-        elif reason:
-            self.interventions.append(Intervention(stamp_s, stamp_s, reason))
-        self._is_braking = bool(reason)
+    def _gate(self, stamp_s: float, robot: RobotSnapshot) -> None:
+        if robot.gate_reason:
+            last = self.interventions[-1] if self.interventions else None
+            if last is None or stamp_s - last.end_s > _CALM_S or last.held_by is not robot.held_by:
+                last = Intervention(stamp_s, stamp_s, robot.gate_reason, robot.held_by)
+                self.interventions.append(last)
+            last.end_s = stamp_s
+        self.most_moving = max(self.most_moving, len(robot.moving))
 
     def _waypoints(self, stamp_s: float, visited: object) -> None:
         if visited is self._visited or not isinstance(visited, tuple):

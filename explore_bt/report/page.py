@@ -13,7 +13,7 @@ from explore_bt.report.map_picture import cells_png, data_uri, first_seen_png
 from explore_bt.report.palette import CLEARANCE_STOPS, robot_colour
 from explore_bt.report.run_history import RunHistory
 from explore_bt.report.sections import (
-    events_section,
+    dry_run_note,
     files_section,
     gate_section,
     nodes_section,
@@ -22,6 +22,7 @@ from explore_bt.report.sections import (
     tiles,
     why_section,
 )
+from explore_bt.report.what_happened import what_happened_section
 from explore_bt.report.words import headline, outcome_words
 from explore_bt.types import OccupancyGrid, Result
 
@@ -48,13 +49,14 @@ def report_page(history: RunHistory, result: Result) -> str:
         "reason": escape(result.reason[:1].upper() + result.reason[1:]),
         "headline": escape(headline(result)),
         "tiles": tiles(result),
+        "dry_run": dry_run_note(result),
         "legend": _legend(robots, several),
         "why": why_section(result),
         "files": files_section(run.folder),
         "charts": _charts(robots, tracks, history.end_s),
         "slam": slam_section(result),
         "gate": gate_section(robots) if any(robot.nodes for robot in robots) else "",
-        "events": events_section(history),
+        "events": what_happened_section(history),
         "trees": "".join(nodes_section(robot, several) for robot in robots if robot.nodes),
         "result": result_section(result),
     }
@@ -93,6 +95,7 @@ def _charts(robots: list[RobotHistory], tracks: list[Track], end_s: float) -> st
             chart("Mapped", "%", lines("coverage", 100.0), end_s, top=100.0),
             chart("Driven", "m", lines("distance_m"), end_s),
             chart("Clearance", "m", lines("clearance_m"), end_s),
+            chart("Battery", "%", lines("charge", 100.0), end_s, top=100.0),
         )
     )
 

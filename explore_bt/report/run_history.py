@@ -17,6 +17,7 @@ from explore_bt.types import OccupancyGrid
 __all__ = ["RunHistory"]
 
 _MOST_EVENTS = 2000
+_MOST_SAYINGS = 1000
 
 
 @dataclass(slots=True)
@@ -24,8 +25,8 @@ class RunHistory:
     """All robots' histories and the events, in the mission's order.
 
     Attributes:
-        events: the first 2,000; ``events_left_out`` counts the others, so that a plugin that floods
-            the log cannot make a report that no browser opens.
+        events: the first 2,000, and 1,000 of what leaves said (level ``debug``); ``events_left_out`` counts
+            the others, so that a plugin that floods the log cannot make a report that no browser opens.
     """
 
     run: RunInfo
@@ -33,6 +34,7 @@ class RunHistory:
     events: list[Event] = field(default_factory=list)
     events_left_out: int = 0
     end_s: float = 0.0
+    _kept: Counter[bool] = field(default_factory=Counter)
 
     @staticmethod
     def of(run: RunInfo) -> RunHistory:
@@ -50,7 +52,9 @@ class RunHistory:
 
     def on_event(self, event: Event) -> None:
         """Take in one event."""
-        if len(self.events) < _MOST_EVENTS:
+        is_saying = event.level == "debug"
+        self._kept[is_saying] += 1
+        if self._kept[is_saying] <= (_MOST_SAYINGS if is_saying else _MOST_EVENTS):
             self.events.append(event)
         else:
             self.events_left_out += 1
@@ -67,7 +71,3 @@ class RunHistory:
             robot.finish()
             stamps = np.minimum(stamps, robot.first_seen.on(grid))
         return stamps
-
-    def event_levels(self) -> Counter[str]:
-        """How many events of each level."""
-        return Counter(event.level for event in self.events)

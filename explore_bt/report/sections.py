@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from urllib.parse import quote
 
-from explore_bt.interfaces import Event, NodeInfo
-from explore_bt.report.history import NodeUse, RobotHistory
-from explore_bt.report.run_history import RunHistory
+from explore_bt.interfaces import NodeInfo
+from explore_bt.recording import NodeTally
+from explore_bt.report.history import RobotHistory
+from explore_bt.report.markup import section, table
 from explore_bt.report.words import clock, duration, figure, length, percent
 from explore_bt.types import Result
 
 __all__ = [
-    "events_section",
+    "dry_run_note",
     "files_section",
     "gate_section",
     "nodes_section",
@@ -34,19 +35,6 @@ _ABOUT_FILES = {
     "truth.tum": "true trajectory, TUM format",
     "recording.mcap": "the whole run, opens in Foxglove",
 }
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]], classes: str = "") -> str:
-    """A table of cells that are HTML already."""
-    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
-    names = "".join(f"<th>{escape(name)}</th>" for name in head)
-    table = f'<table class="{classes}"><thead><tr>{names}</tr></thead><tbody>{body}</tbody></table>'
-    return f'<div class="scroll">{table}</div>'
-
-
-def _section(title: str, content: str, note: str = "") -> str:
-    aside = f" <span>{escape(note)}</span>" if note else ""
-    return f"<section><h2>{escape(title)}{aside}</h2>{content}</section>"
 
 
 def tiles(result: Result) -> str:
@@ -68,11 +56,19 @@ def tiles(result: Result) -> str:
     )
 
 
+def dry_run_note(result: Result) -> str:
+    """A warning above everything else that not all of this was driven; empty for a run that counts."""
+    if not result.mocked:
+        return ""
+    paths = ", ".join(f"<code>{escape(path)}</code>" for path in result.mocked)
+    return f'<p class="dry-run"><b>Dry run:</b> scripts played {paths}. Its figures say nothing.</p>'
+
+
 def why_section(result: Result) -> str:
     """Why the mission ended, and what is left to explore."""
     left = "".join(f"<li>{escape(line)}</li>" for line in result.left_open)
     rest = f"<h3>Left open</h3><ul>{left}</ul>" if left else "<p>Nothing was left open.</p>"
-    return _section("Why it stopped", f"<p>{escape(result.reason) or 'No reason was given.'}</p>{rest}")
+    return section("Why it stopped", f"<p>{escape(result.reason) or 'No reason was given.'}</p>{rest}")
 
 
 def files_section(folder: Path) -> str:
@@ -87,13 +83,13 @@ def files_section(folder: Path) -> str:
         f'<li><a href="{quote(name)}">{escape(name)}</a> {escape(_ABOUT_FILES[Path(name).name])}</li>'
         for name in rows
     )
-    return _section("Files", f'<ul class="files">{links}</ul>')
+    return section("Files", f'<ul class="files">{links}</ul>')
 
 
 def slam_section(result: Result) -> str:
     """The SLAM plugin's own figures."""
     rows = [(escape(name), escape(figure(value))) for name, value in sorted(result.slam.items())]
-    return _section("SLAM", _table(("figure", "value"), rows, "figures")) if rows else ""
+    return section("SLAM", table(("figure", "value"), rows, "figures")) if rows else ""
 
 
 def gate_section(robots: Iterable[RobotHistory]) -> str:
@@ -103,47 +99,42 @@ def gate_section(robots: Iterable[RobotHistory]) -> str:
         key=lambda pair: pair[0].begin_s,
     )
     if not found:
-        return _section("Safety gate", "<p>It never had to brake.</p>")
+        return section("Safety gate", "<p>It never had to brake.</p>")
     rows = [
-        (clock(one.begin_s), f"{one.end_s - one.begin_s:.1f} s", escape(name), escape(one.reason))
+        (
+            f'<a href="#t={one.begin_s:.1f}">{clock(one.begin_s)}</a>',
+            f"{one.end_s - one.begin_s:.1f} s",
+            escape(name),
+            escape(one.held_by),
+            escape(one.reason),
+        )
         for one, name in found
     ]
     times = "once" if len(rows) == 1 else f"{len(rows)} times"
-    return _section("Safety gate", _table(("at", "for", "robot", "why"), rows, "gate"), f"braked {times}")
-
-
-def events_section(history: RunHistory) -> str:
-    """Everything that was worth a line."""
-    if not history.events:
-        return _section("Events", "<p>None.</p>")
-    levels = history.event_levels()
-    note = ", ".join(f"{count} {level}" for level, count in levels.items())
-    if history.events_left_out:
-        note += f"; {history.events_left_out} more are in the recording"
-    return _section("Events", _table(("at", "robot", "from", "what"), map(_event_row, history.events)), note)
-
-
-def _event_row(event: Event) -> tuple[str, str, str, str]:
-    level = event.level if event.level in ("info", "warning", "error") else "info"
-    words = f'<span class="level {level}">{level}</span> {escape(event.message)}'
-    return (clock(event.stamp_s), escape(event.robot), escape(event.source), words)
+    held_s = sum(one.end_s - one.begin_s for one, _ in found)
+    note = f"braked {times}, {duration(held_s)} in all"
+    head = ("at", "for", "robot", "held by", "why at first")
+    return section("Safety gate", table(head, rows, "gate"), note)
 
 
 def nodes_section(robot: RobotHistory, several: bool) -> str:
-    """For each node of a tree, how long it ran and how it ended."""
-    rows = [_node_row(node, use) for node, use in zip(robot.nodes, robot.node_uses, strict=False)]
+    """For each node of a tree, how often it was ticked, how long it ran and how it ended."""
+    used = list(zip(robot.nodes, robot.tally.nodes, strict=False))
+    rows = [_node_row(node, tally) for node, tally in used]
     title = f"Tree of {robot.name}" if several else "Tree"
-    head = ("node", "type", "running", "succeeded", "failed", "")
-    return _section(title, _table(head, rows, "nodes"), "for how long, how often")
+    head = ("node", "type", "ticks", "running", "longest", "succeeded", "failed", "cut off")
+    never = sum(not tally.ticks for _, tally in used)
+    note = f"{never} of {len(used)} nodes were never ticked" if never else "every node was ticked"
+    return section(title, table(head, rows, "nodes"), note)
 
 
-def _node_row(node: NodeInfo, use: NodeUse) -> tuple[str, ...]:
+def _node_row(node: NodeInfo, tally: NodeTally) -> tuple[str, ...]:
     indent = f"padding-left:{node.path.count('/') * 0.9:.1f}em"
     name = f'<span style="{indent}" title="{escape(node.place, quote=True)}">{escape(node.name)}</span>'
     kind = escape(node.type if node.type != node.name else "")
-    running = duration(use.running_s) if use.running_s else "·"
-    ends = (f"{count} ×" if count else "·" for count in (use.successes, use.failures))
-    return (name, kind, running, *ends, "" if use.was_ticked else "never ticked")
+    times = (duration(span_s) if span_s else "·" for span_s in (tally.running_s, tally.longest_s))
+    ends = (f"{count} ×" if count else "·" for count in (tally.successes, tally.failures, tally.cut_off))
+    return (name, kind, str(tally.ticks) if tally.ticks else "never", *times, *ends)
 
 
 def result_section(result: Result) -> str:
@@ -151,7 +142,7 @@ def result_section(result: Result) -> str:
     rows = [
         (escape(name), f"<code>{escape(_plain(value))}</code>") for name, value in result.as_dict().items()
     ]
-    return _section("result.json", _table(("name", "value"), rows, "figures"))
+    return section("result.json", table(("name", "value"), rows, "figures"))
 
 
 def _plain(value: object) -> str:

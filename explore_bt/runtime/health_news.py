@@ -15,6 +15,7 @@ class HealthNews:
 
     def __init__(self) -> None:
         self._told = Health.OK
+        self._told_s = 0.0
         self._better_since_s: float | None = None
 
     def of(self, estimate: Estimate, now_s: float) -> str:
@@ -29,5 +30,9 @@ class HealthNews:
                 self._better_since_s = now_s
             if now_s - self._better_since_s < _CALM_S:
                 return ""
-        self._told, self._better_since_s = health, None
-        return f"{before} → {health} {estimate.reason}".strip()
+        lasted = ""
+        if self._better_since_s is not None:
+            lasted = f" after {self._better_since_s - self._told_s:.1f} s"
+            now_s = self._better_since_s
+        self._told, self._told_s, self._better_since_s = health, now_s, None
+        return f"{before} → {health}{lasted}" + (f": {estimate.reason}" if estimate.reason else "")

@@ -129,7 +129,13 @@ def _result(
         version=__version__,
         left_open=tuple(str(sentence) for sentence in left_open) if isinstance(left_open, tuple) else (),
         slam=dict(robot.slam.figures()),
+        mocked=_mocked(robots),
     )
+
+
+def _mocked(robots: Sequence[Robot]) -> tuple[str, ...]:
+    paths = (info.path for robot in robots for info in robot.tree.infos if info.is_mocked)
+    return tuple(dict.fromkeys(paths))
 
 
 def _sum_of_known(counts: Iterable[int | None]) -> int | None:

@@ -23,6 +23,11 @@ class Purse:
         self._first = self._first or battery
         self._last = battery
 
+    @property
+    def charge(self) -> float | None:
+        """The battery's newest state of charge, a share; None where nobody measures it."""
+        return None if self._last is None else self._last.charge
+
     def budgets(self, now_s: float, distance_m: float) -> tuple[Budget, ...]:
         """All that are limited; the battery's counts what is above its reserve, in percent of the charge."""
         limits, found = self._limits, []

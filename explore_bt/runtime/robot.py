@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -16,32 +15,36 @@ from explore_bt.interfaces import (
     Event,
     MapMemory,
     MapView,
-    NodeState,
     RobotContext,
     RobotSnapshot,
 )
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
+from explore_bt.runtime.gate_news import GateNews
 from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.legs import plan_through
+from explore_bt.runtime.map_news import MapNews
 from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
+from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
+from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
-from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, status_word, tick
+from explore_bt.runtime.tree_news import TreeNews
+from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
     Battery,
     Budget,
+    Drawing,
     Estimate,
     Health,
     Measurement,
     MovingObstacle,
-    OccupancyGrid,
     Path,
     Pose2,
     Scan2D,
@@ -79,19 +82,21 @@ class Robot:
         self.blackboard = Blackboard()
         self.tree = build_tree(spec.tree, self, self.blackboard)
         self._probe: Probe | None = None
-        self._ticks: Counter[int] = Counter()
+        self._counts = TickCounts(self.tree.nodes)
+        self._sketch = Sketch()
         self._scan: Scan2D | None = None
         self._measured: list[Measurement] = []
         self._view: MapView | None = None
         self._map_memory = MapMemory()
-        self._planned_on: OccupancyGrid | None = None
+        self._map_news = MapNews(self.slam, self._planner)
         self._tight = TightPlaces()
         self._purse = Purse(mission.limits)
         self._slam_fault = ""
         self._logged: set[tuple[str, str]] = set()
         self._health_news = HealthNews()
-        self._gate_reason = ""
         self._held_s = 0.0
+        self._gate_news = GateNews()
+        self._tree_news = TreeNews(self.tree)
         self._people = People()
         self.moving: tuple[MovingObstacle, ...] = ()
 
@@ -204,7 +209,7 @@ class Robot:
     def _plan(self, goal: Pose2, via: Sequence[tuple[float, float]], radius_m: float) -> Path:
         here = self.pilot.predict(self.estimate(), self._clock_s()).T_map_base
         grid = self.view().grid
-        self._tell_change(grid)
+        self._map_news.tell(grid)
         return plan_through(
             lambda start, end: self._planner.plan(grid, start, end, radius_m, lambda: self._stop.is_raised),
             here,
@@ -212,18 +217,9 @@ class Robot:
             goal,
         )
 
-    def _tell_change(self, grid: OccupancyGrid) -> None:
-        """Tell the planner where the map differs from the one planned on before, if SLAM knows.
-
-        A map with tight places marked has cells that SLAM knows nothing of: then nobody knows.
-        """
-        plain = grid if grid is self.slam.grid() else None
-        before, self._planned_on = self._planned_on, plain
-        if before is None or plain is None or before is plain:
-            return
-        window = self.slam.changed_since(before.revision)
-        if window is not None:
-            self._planner.expect_change(before, plain, window)
+    def draw(self, drawing: Drawing) -> None:
+        """Show observers what a leaf looked at."""
+        self._sketch.add(drawing)
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place that proved too tight for the safety gate."""
@@ -273,9 +269,12 @@ class Robot:
 
     def decide(self) -> Status:
         """Tick the tree once."""
+        self._sketch.begin_tick()
         try:
             for node in tick(self.tree.root, self._probe):
-                self._ticks[id(node)] += 1
+                self._counts.note(node)
+                for news in self._tree_news.of(node, self.now_s()):
+                    self.tell(*news)
         except Exception as error:  # a leaf is a plugin too: its failure ends the mission, not the process
             reason = str(error) if isinstance(error, PortUnsetError) else repr(error)
             self.blackboard.write(REASON_KEY, f"a leaf failed: {reason}")
@@ -299,7 +298,8 @@ class Robot:
     def snapshot(self) -> RobotSnapshot:
         """What observers are shown after a tick; what was measured and who was ticked is shown once."""
         measured, self._measured = tuple(self._measured), []
-        ticks, self._ticks = self._ticks, Counter()
+        nodes = self._counts.states()
+        self._counts.forget()
         return RobotSnapshot(
             robot=self.name,
             estimate=self.estimate(),
@@ -308,15 +308,16 @@ class Robot:
             path=self.pilot.path,
             motion=self.pilot.motion,
             gate_reason=self.pilot.gate_reason,
-            nodes=tuple(
-                NodeState(status_word(node.status), node.feedback_message, ticks[id(node)])
-                for node in self.tree.nodes
-            ),
+            nodes=nodes,
             blackboard=dict(self.blackboard),
             score=self.scores.score(),
             true_pose=self.scores.true_pose,
             measured=measured,
             held_by=self.pilot.held_by,
+            drawing=self._sketch.drawing,
+            moving=self.moving,
+            budgets=self.budgets(),
+            charge=self._purse.charge,
         )
 
     def tell(self, level: str, source: str, message: str) -> None:
@@ -395,6 +396,8 @@ class Robot:
             self.tell("info" if estimate.health is Health.OK else "warning", "slam", news)
 
     def _watch_gate(self) -> None:
-        if self.pilot.gate_reason and not self._gate_reason and self._scan is not None:
-            self.tell("warning", "safety gate", self.pilot.gate_reason)
-        self._gate_reason = self.pilot.gate_reason
+        if self._scan is None:
+            return  # before the first one there is nothing to drive by, nor to drive to
+        news = self._gate_news.of(self.pilot.gate_reason, self.pilot.held_by, self._clock_s())
+        if news:
+            self.tell("warning" if self._gate_news.is_held else "info", "safety gate", news)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterator, Sequence
-
-from py_trees.behaviour import Behaviour
+from collections.abc import Sequence
 
 from explore_bt.interfaces import Event, TickSnapshot
 from explore_bt.mission import Mission
@@ -13,6 +11,7 @@ from explore_bt.runtime.attendant import Attendant
 from explore_bt.runtime.observers import Observers
 from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
+from explore_bt.runtime.tree_news import leaves_that_ended
 from explore_bt.tree import Status
 from explore_bt.types import Outcome, Scan2D
 
@@ -20,6 +19,7 @@ __all__ = ["Runner"]
 
 FIRST_SCAN_TIMEOUT_S = 5.0
 REST_TIMEOUT_S = 5.0
+_LEVELS = {Outcome.FAILED: "error", Outcome.BUDGET: "warning"}
 
 
 class _Phase(enum.Enum):
@@ -179,7 +179,8 @@ class Runner:
         self.outcome, self.reason = outcome, reason
         self._phase = _Phase.RESTING
         self._rest_until_s = self.now_s + REST_TIMEOUT_S
-        self._observers.event(Event(self.now_s, "", "info", "mission", f"{outcome}: {reason}"))
+        level = _LEVELS.get(outcome, "info")
+        self._observers.event(Event(self.now_s, "", level, "mission", f"{outcome}: {reason}"))
         for robot in self.robots:
             robot.rest()
 
@@ -201,17 +202,7 @@ def _last_words(robot: Robot, status: Status) -> str:
     """What the tree wrote as its reason; where it failed, also what the leaves said that made it fail."""
     words = [str(robot.blackboard[REASON_KEY])] if REASON_KEY in robot.blackboard else []
     if status is Status.FAILURE or not words:
-        ended = [leaf for leaf in _leaves_that_ended(robot.tree.root, status) if leaf.feedback_message]
+        ended = [leaf for leaf in leaves_that_ended(robot.tree.root, status) if leaf.feedback_message]
         spoken = ended if status is Status.FAILURE else ended[-1:]
         words += [f"{leaf.name}: {leaf.feedback_message}" for leaf in spoken]
     return "; ".join(dict.fromkeys(words)) or f"the tree of robot {robot.name} ended with {status.value}"
-
-
-def _leaves_that_ended(node: Behaviour, status: Status) -> Iterator[Behaviour]:
-    """Leaves with this status below nodes with this status: a failure that was recovered from is left out."""
-    if node.status is not status:
-        return
-    if not node.children:
-        yield node
-    for child in node.children:
-        yield from _leaves_that_ended(child, status)

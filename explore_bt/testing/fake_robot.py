@@ -12,6 +12,7 @@ from explore_bt.interfaces import ControlOutput, ControlStatus, HeldBy, MapView
 from explore_bt.types import (
     FREE,
     Budget,
+    Drawing,
     Estimate,
     MovingObstacle,
     OccupancyGrid,
@@ -70,6 +71,7 @@ class FakeRobot:
         self.driven: list[Pose2] = []
         self.avoided: list[tuple[float, float]] = []
         self.cleared: list[float] = []
+        self.drawn: list[Drawing] = []
         self.limited: tuple[Budget, ...] = ()
         self.moving: tuple[MovingObstacle, ...] = ()
 
@@ -97,6 +99,10 @@ class FakeRobot:
     def scan(self) -> Scan2D | None:
         """``latest_scan``."""
         return self.latest_scan
+
+    def draw(self, drawing: Drawing) -> None:
+        """Remember it in ``drawn``."""
+        self.drawn.append(drawing)
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Remember it in ``avoided``."""

@@ -21,6 +21,7 @@ from explore_bt.tree.control import (
     halt,
 )
 from explore_bt.tree.leaf import Leaf, Status
+from explore_bt.tree.mocked import MockedLeaf, Round, Script, mocked
 from explore_bt.tree.ports import REQUIRED, Input, Key, Output, PortUnsetError
 from explore_bt.tree.probe import Probe, attach, detach, tick
 from explore_bt.tree.status_word import status_word
@@ -38,6 +39,7 @@ __all__ = [
     "Invert",
     "Key",
     "Leaf",
+    "MockedLeaf",
     "OnFailure",
     "Output",
     "Parallel",
@@ -47,6 +49,8 @@ __all__ = [
     "ReactiveSequence",
     "Repeat",
     "Retry",
+    "Round",
+    "Script",
     "Sequence",
     "Status",
     "Subtree",
@@ -54,6 +58,7 @@ __all__ = [
     "attach",
     "detach",
     "halt",
+    "mocked",
     "status_word",
     "tick",
 ]

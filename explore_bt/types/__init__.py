@@ -4,6 +4,14 @@ Frames are REP-105's ``map → odom → base_link``, units REP-103's: metres, ra
 """
 
 from explore_bt.types.budget import Budget
+from explore_bt.types.drawing import (
+    Drawing,
+    FrontierMark,
+    HalfPlaneMark,
+    SectorMark,
+    Verdict,
+    ViewMark,
+)
 from explore_bt.types.estimate import Estimate, Health, Trajectory
 from explore_bt.types.grid import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
 from explore_bt.types.measurement import (
@@ -28,8 +36,11 @@ __all__ = [
     "UNKNOWN",
     "Battery",
     "Budget",
+    "Drawing",
     "Estimate",
+    "FrontierMark",
     "GridWindow",
+    "HalfPlaneMark",
     "Health",
     "Imu",
     "MapStructure",
@@ -48,8 +59,11 @@ __all__ = [
     "RgbdFrame",
     "Scan2D",
     "Score",
+    "SectorMark",
     "Trajectory",
     "Twist2",
+    "Verdict",
+    "ViewMark",
     "Voxels",
     "Waypoint",
     "WheelOdometry",

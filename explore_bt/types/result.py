@@ -51,6 +51,7 @@ class Result:
         outcome, reason: why the mission ended.
         left_open: what was not explored and why, one sentence each.
         slam: the SLAM plugin's own figures (``loop_closures``, ``keyframes``, ...).
+        mocked: paths of the leaves that a script played; none in a run that counts.
     """
 
     outcome: Outcome
@@ -71,6 +72,7 @@ class Result:
     version: str
     left_open: tuple[str, ...] = ()
     slam: dict[str, float] = field(default_factory=dict)
+    mocked: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, object]:
         """Plain values, ready for JSON."""

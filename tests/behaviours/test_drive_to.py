@@ -182,7 +182,7 @@ def test_a_way_that_someone_cuts_is_waited_for_even_if_it_was_the_only_one() -> 
     robot.grid = OccupancyGrid(cells, robot.grid.resolution_m, robot.grid.origin_xy, revision=1)
     leaf.tick_once()
     assert leaf.status is Status.RUNNING
-    assert leaf.feedback_message == "waiting for someone to pass"
+    assert leaf.feedback_message == "waiting for someone to pass, up to 3 s"
     assert robot.pilot.holds == 1
 
 

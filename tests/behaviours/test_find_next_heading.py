@@ -70,8 +70,27 @@ def test_a_revisit_in_the_same_direction_is_refused_in_words_and_the_next_sector
     find.tick_once()
     board.write("visited", (Waypoint(find.goal.pose),))
     find.tick_once()
-    assert "refused (visited, same direction); took " in find.feedback_message
+    refusal = "visited, same direction: 0.00 m from waypoint 0, 0° off"
+    assert f"2 free sectors; 94° at +43° refused ({refusal}); took 34° at -73° → " in find.feedback_message
     assert find.goal.heading_rad < 0.0
+    (drawing,) = robot.drawn[1:]
+    refused, taken = drawing.sectors or ()
+    assert (refused.state, refused.reason, taken.state) == ("rejected", refusal, "taken")
+
+
+def test_the_drawing_holds_the_sectors_on_the_map_and_the_half_planes_that_constrain() -> None:
+    robot, board = FakeRobot(endless_floor(Pose2(1, 2, 0)), Pose2(1.0, 2.0, math.pi / 2)), Blackboard()
+    robot.latest_scan = scan_with_walls((-40.0, -20.0, 1.0))
+    RecordWaypoint("start", robot, board, {"place": "here"}).tick_once()
+    leaf(robot, board).tick_once()
+    (drawing,) = robot.drawn
+    (plane,) = drawing.half_planes or ()
+    assert (plane.x, plane.y, round(plane.normal_x, 9), plane.normal_y) == (1.0, 2.0, 0.0, 1.0)
+    taken, open_one = drawing.sectors or ()
+    assert (taken.state, open_one.state, open_one.reason) == ("taken", "open", "")
+    assert (taken.x, taken.y, taken.range_m) == (1.0, 2.0, 1.2)
+    assert taken.to_rad == pytest.approx(math.pi, abs=1e-6)  # the left end of the semicircle ahead
+    assert drawing.layers().keys() == {"sectors", "half_planes"}
 
 
 def test_the_opposite_direction_through_a_visited_place_is_allowed() -> None:
@@ -89,7 +108,7 @@ def test_the_half_planes_forbid_going_back_until_they_are_reset() -> None:
     find = leaf(robot, board, revisit=False)
     find.tick_once()
     assert find.status is Status.FAILURE
-    assert "outside the half-planes" in find.feedback_message
+    assert "(outside the half-planes: 1.50 m behind that of (0.0, 0.0))" in find.feedback_message
     ResetHalfPlanes("reset", robot, board).tick_once()
     find.tick_once()
     assert find.status is Status.SUCCESS

@@ -68,6 +68,32 @@ def test_the_nearest_frontier_is_driven_up_to() -> None:
     assert leaf.blackboard["goal"].position[0] < 0.5
 
 
+def test_every_frontier_is_drawn_with_what_was_decided_about_it() -> None:
+    robot, board = FakeRobot(hall(), Pose2(1.5, 2.0, 0.0)), Blackboard()
+    leaf = FindFrontier("find", robot, board, {})
+    leaf.tick_once()
+    taken, other = robot.drawn[-1].frontiers or ()
+    assert (taken.state, other.state, other.reason) == ("taken", "open", "")
+    assert (taken.x, taken.y) == leaf.goal.looks_at
+    board.write("given_up", (GivenUp(leaf.goal.position, "no_path", leaf.goal.looks_at),))
+    leaf.tick_once()
+    taken, refused = robot.drawn[-1].frontiers or ()
+    assert (taken.x, refused.state, refused.reason) == (other.x, "rejected", "given up before: no_path")
+
+
+def test_the_views_are_drawn_with_the_goal_first_and_what_was_given_up_last() -> None:
+    robot, board = FakeRobot(hall(), HERE), Blackboard()
+    board.write("given_up", (GivenUp((3.0, 3.0), "no_path"),))
+    leaf = FindView("find", robot, board, {})
+    leaf.tick_once()
+    drawing = robot.drawn[-1]
+    first, *_, last = drawing.views or ()
+    assert (first.x, first.y, first.state, first.reason) == (*leaf.goal.position, "taken", "the next goal")
+    assert first.gain_m2 > 0.0
+    assert (last.x, last.y, last.state, last.reason) == (3.0, 3.0, "rejected", "no_path")
+    assert robot.drawn[0].sectors  # the safe headings, as places to look from
+
+
 def test_a_goal_that_still_shows_as_much_once_it_is_reached_is_not_chosen_again() -> None:
     grid, blackboard = hall(open_left=False), Blackboard()
     robot = FakeRobot(grid, HERE)

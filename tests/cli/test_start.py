@@ -17,6 +17,8 @@ COMMANDS = (
     "show",
     "convert",
     "slam",
+    "export",
+    "stats",
     "world",
     "schema",
     "plugins",

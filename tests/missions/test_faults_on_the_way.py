@@ -256,11 +256,11 @@ def test_an_estimate_that_stands_still_is_not_driven_by(
 @pytest.mark.parametrize(
     ("damage", "by_gate", "by_slam"),
     [
-        (no_scan, "the newest scan is 0.", "degraded → lost no scan for 1.0 s"),
+        (no_scan, "the newest scan is 0.", "degraded → lost: no scan for 1.0 s"),
         (
             invalid_scan,
             "no beam of the newest scan is valid",
-            "degraded → lost a scan in which every beam is invalid",
+            "degraded → lost: a scan in which every beam is invalid",
         ),
     ],
 )

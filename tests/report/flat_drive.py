@@ -11,16 +11,21 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.interfaces import Event, NodeInfo, NodeState, RobotSnapshot, RunInfo, TickSnapshot
+from explore_bt.interfaces import Event, HeldBy, NodeInfo, NodeState, RobotSnapshot, RunInfo, TickSnapshot
 from explore_bt.types import (
     FREE,
     OCCUPIED,
     UNKNOWN,
+    Budget,
+    Drawing,
     Estimate,
+    FrontierMark,
+    HalfPlaneMark,
     Health,
     Imu,
     Measurement,
     MotionState,
+    MovingObstacle,
     OccupancyGrid,
     Outcome,
     Path,
@@ -28,7 +33,10 @@ from explore_bt.types import (
     Result,
     Scan2D,
     Score,
+    SectorMark,
     Twist2,
+    Verdict,
+    ViewMark,
     Waypoint,
     WheelOdometry,
 )
@@ -177,14 +185,28 @@ def ancestors(index: int) -> set[int]:
 def states(active: int, message: str, choice: str) -> tuple[NodeState, ...]:
     running = ancestors(active)
     return tuple(
-        NodeState("running", message if i == active else "")
+        NodeState("running", message if i == active else "", ticks=1)
         if i in running
-        else NodeState("success", choice if i == CHOOSE else "")
+        else NodeState("success", choice if i == CHOOSE else "", ticks=1, successes=1)
         if i < active
         and NODES[i][1] in ("find_next_heading", "plan_path", "slam_ok", "wait_for_map")
         and i <= 13
         else NodeState("idle", "")
         for i in range(len(NODES))
+    )
+
+
+def drawing_at(here: Pose2, goal: Pose2) -> Drawing:
+    """Two sectors, the first refused, a half-plane, a frontier and a view at the goal."""
+    yaw = here.yaw_rad
+    return Drawing(
+        sectors=(
+            SectorMark(here.x, here.y, yaw + 0.3, yaw + 1.4, 1.2, Verdict.REJECTED, "visited"),
+            SectorMark(here.x, here.y, yaw - 0.4, yaw + 0.3, 1.2, Verdict.TAKEN, "→ the goal"),
+        ),
+        half_planes=(HalfPlaneMark(here.x, here.y, math.cos(yaw), math.sin(yaw)),),
+        frontiers=(FrontierMark(goal.x, goal.y, 1.25),),
+        views=(ViewMark(goal.x, goal.y, goal.yaw_rad, 2.5, Verdict.TAKEN, "the next goal"),),
     )
 
 
@@ -199,6 +221,7 @@ class _Robot:
         self.grid = OccupancyGrid(world.known.copy(), RESOLUTION_M, (-MARGIN_M, -MARGIN_M), 0)
         self.scan = world.scan(self.poses[0], 0.0)
         self.path: Path | None = None
+        self.drawing = Drawing()
         self.choice, self.goal = "", Waypoint(Pose2(*map(float, self.poses[0])))
 
     def tick(self, index: int, map_every: int) -> RobotSnapshot:
@@ -233,6 +256,11 @@ class _Robot:
             score=self._score(clearance, pose),
             true_pose=Pose2(*map(float, pose)),
             measured=self._measured(stamp_s),
+            drawing=self.drawing,
+            moving=(MovingObstacle(7, (1.0, 0.1 * (index % 20)), (0.0, 1.0), 0.2, stamp_s),) * (index < 40),
+            budgets=(Budget("time", "s", 900.0, 900.0 - stamp_s),),
+            charge=1.0 - stamp_s / 3600.0,
+            held_by=HeldBy.OBSTACLE if braking else HeldBy.NOTHING,
         )
 
     def _measured(self, stamp_s: float) -> tuple[Measurement, ...]:
@@ -245,6 +273,7 @@ class _Robot:
         self.choice = f"3 sectors, widest 62° rejected (visited), took 41° → ({goal.x:.1f}, {goal.y:.1f})"
         self.goal = Waypoint(goal, self.choice, 2.5)
         self.visited = (*self.visited, Waypoint(Pose2(*map(float, self.poses[index])), self.choice, 2.5))
+        self.drawing = drawing_at(Pose2(*map(float, self.poses[index])), goal)
         ahead = self.poses[index : end + 1 : max(1, (end - index) // 20)]
         self.path = Path(ahead, np.full(len(ahead), 0.4))
 

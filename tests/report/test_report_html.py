@@ -14,6 +14,7 @@ import pytest
 
 from explore_bt.interfaces import Event
 from explore_bt.report import ReportSink
+from explore_bt.report.what_happened import KINDS, kind_of
 from explore_bt.types import UNKNOWN, OccupancyGrid, Outcome, Score
 
 VOID = {"meta", "input", "line", "br", "link", "img"}
@@ -87,10 +88,28 @@ def test_every_entry_of_result_json_stands_in_its_table(page, flat_drive):
 
 def test_gate_events_slam_figures_and_nodes_are_listed(page):
     text = "".join(checked(page).text)
-    assert "braked once" in text
+    assert "braked once, 0.8 s in all" in text
     assert "few returns in <corridor> & beyond" in text
     assert "loop_closures" in text
-    assert "never ticked" in text
+    assert "nodes were never ticked" in text
+
+
+def test_what_happened_has_a_switch_for_every_kind_and_leads_to_the_moment(page, flat_drive):
+    table = page.partition("What happened and why")[2].partition("</section>")[0]
+    for event in flat_drive.events:
+        row = f'<tr class="{kind_of(event)}"><td><a href="#t={event.stamp_s:.1f}">'
+        assert row in table
+        assert f'id="show-{kind_of(event)}" checked' in table
+    style = page.partition("<style>")[2].partition("</style>")[0]
+    assert all(f"#show-{kind}:not(:checked)" in style for kind in KINDS)
+
+
+def test_what_leaves_say_is_there_but_hidden_at_first(flat_drive, tmp_path):
+    saying = Event(3.0, "robot", "debug", "complete/find_view", "12 views to go")
+    text = write_report(replace(flat_drive, events=[saying]), tmp_path)
+    assert '<input type="checkbox" id="show-saying">' in text
+    assert '<tr class="saying">' in text
+    assert '<span title="complete/find_view">find_view</span>' in text
 
 
 def test_the_drive_in_the_page_is_the_drive(page, flat_drive):
@@ -169,7 +188,7 @@ def test_only_files_that_exist_are_linked(flat_drive, tmp_path):
     (tmp_path / "my robot").mkdir()
     (tmp_path / "my robot" / "trajectory.tum").touch()
     links = checked(write_report(flat_drive, tmp_path)).links
-    assert [link for link in links if not link.startswith("data:")] == [
+    assert [link for link in links if not link.startswith(("data:", "#t="))] == [
         "result.json",
         "map.yaml",
         "map_view.png",

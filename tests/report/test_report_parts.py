@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from explore_bt.interfaces import NodeState
+from explore_bt.interfaces import Event, HeldBy
 from explore_bt.report.charts import Series, chart
 from explore_bt.report.first_seen import FirstSeen
 from explore_bt.report.history import RobotHistory
 from explore_bt.report.overlay import cropped, overlaid
+from explore_bt.report.run_history import RunHistory
 from explore_bt.report.words import clock, duration, figure, length, percent
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
@@ -126,15 +127,22 @@ def test_figures_read_as_people_say_them():
     assert re.fullmatch(r"\S+", figure(float("inf")))
 
 
-def test_a_node_that_is_passed_over_is_not_counted_again(flat_drive):
+def test_a_gate_that_flickers_is_one_intervention_until_something_else_holds_the_robot(flat_drive):
     robot = flat_drive.ticks[0].robots[0]
-    history = RobotHistory("robot", 0.25, flat_drive.run.trees["robot"][:2])
-    said = ["idle", "running", "running", "failure", "failure", "success", "success", "success"]
-    words = ["", "", "", "no way", "no way", "found 1", "found 1", "found 2"]
-    for index, (status, message) in enumerate(zip(said, words, strict=True)):
-        nodes = (NodeState(status, message), NodeState("idle", ""))
-        history.on_tick(0.1 * index, replace(robot, nodes=nodes))
-    first, second = history.node_uses
-    assert (round(first.running_s, 6), first.successes, first.failures) == (0.2, 2, 1)
-    assert first.was_ticked
-    assert not second.was_ticked
+    history = RobotHistory("robot", 0.25, flat_drive.run.trees["robot"])
+    for k in range(60):
+        held_by = HeldBy.SOMEONE if k < 20 else HeldBy.OBSTACLE
+        reason = f"{k} cm" if k < 40 and k % 3 == 0 else ""
+        history.on_tick(0.1 * k, replace(robot, gate_reason=reason, held_by=held_by))
+    told = [(each.held_by, round(each.begin_s, 1), round(each.end_s, 1)) for each in history.interventions]
+    assert told == [(HeldBy.SOMEONE, 0.0, 1.8), (HeldBy.OBSTACLE, 2.1, 3.9)]
+
+
+def test_what_leaves_say_cannot_push_out_what_matters(flat_drive):
+    history = RunHistory.of(flat_drive.run)
+    for k in range(1500):
+        history.on_event(Event(float(k), "robot", "debug", "a/b", f"saying {k}"))
+    history.on_event(Event(9.0, "robot", "warning", "safety gate", "held"))
+    assert len(history.events) == 1001
+    assert history.events_left_out == 500
+    assert history.events[-1].message == "held"

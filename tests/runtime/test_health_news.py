@@ -17,10 +17,10 @@ def test_worse_is_told_at_once_and_better_after_a_second() -> None:
     states[40:42] = [(4.0, Health.LOST), (4.1, Health.LOST)]
     lines = told(states)
     assert [line for _, line in lines] == [
-        "ok → degraded why",
-        "degraded → ok",
-        "ok → lost why",
-        "lost → ok",
+        "ok → degraded: why",
+        "degraded → ok after 1.5 s",
+        "ok → lost: why",
+        "lost → ok after 0.2 s",
     ]
     assert [round(at_s, 1) for at_s, _ in lines] == [0.5, 3.0, 4.0, 5.2]
 

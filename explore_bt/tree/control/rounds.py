@@ -61,6 +61,11 @@ class Retry(Decorator):
         """No attempt has failed."""
         self._failed = 0
 
+    @property
+    def tries_left(self) -> int:
+        """How many more attempts there will be if the present one fails."""
+        return self.retries - self._failed
+
     def work(self) -> Work:
         """Tick the child, attempt after attempt."""
         while self._failed <= self.retries:
