@@ -46,7 +46,7 @@ class NodeState:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunInfo:
-    """All that is known when a run begins."""
+    """All that is known when a run begins, or goes on: then ``resumed_s`` is the mission time of that."""
 
     mission: str
     mission_text: str
@@ -56,6 +56,7 @@ class RunInfo:
     folder: FilePath
     trees: Mapping[str, tuple[NodeInfo, ...]]
     footprint_radius_m: Mapping[str, float]
+    resumed_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

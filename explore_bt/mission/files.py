@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -49,16 +50,23 @@ class MissionText:
     is_whole: bool = True
 
 
-def read_files(path: Path, faults: Faults, known: tuple[str, ...] = MISSION_KEYS) -> MissionText | None:
+def read_files(
+    path: Path,
+    faults: Faults,
+    known: tuple[str, ...] = MISSION_KEYS,
+    texts: Mapping[Path, str] | None = None,
+) -> MissionText | None:
     """The mission file and all it includes; None if it cannot be read as a mapping at all.
 
     Args:
         path: the file.
         faults: what is wrong with it is noted here.
         known: the keys it may hold; ``INCLUDE_KEYS`` for a file of trees.
+        texts: real path -> text, of files that are not read but known already.
     """
     head = Source(str(path), "", path.parent, has_lines=False)
-    text = _read_text(path, head.place(), "the mission", faults)
+    files = _Files(texts or {}, faults)
+    text = files.read(path, head.place(), "the mission")
     if text is None:
         return None
     source = Source(str(path), text, path.parent)
@@ -66,7 +74,7 @@ def read_files(path: Path, faults: Faults, known: tuple[str, ...] = MISSION_KEYS
     if root is None:
         return None
     mission = MissionText(source, root)
-    _Collector(mission, path, faults).collect(root, known, (Path(os.path.realpath(path)),))
+    _Collector(mission, path, files, faults).collect(root, known, (Path(os.path.realpath(path)),))
     return mission
 
 
@@ -79,29 +87,42 @@ def _mapping(source: Source, faults: Faults) -> Entries | None:
     return None
 
 
-def _read_text(path: Path, place: Place, shown: str, faults: Faults) -> str | None:
-    try:
-        with path.open("rb") as file:
-            data = file.read(_LARGEST_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        faults.add(place, f"{shown} cannot be read: {reason.lower()}")
-        return None
-    if len(data) > _LARGEST_BYTES:
-        faults.add(place, f"{shown} is larger than 1 MB", "a mission is a small text")
-        return None
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        faults.add(place, f"{shown} is not UTF-8 text (byte {error.start})", "save it as UTF-8")
-        return None
+class _Files:
+    """Texts of files: those that are known already, and those on the disk."""
+
+    def __init__(self, texts: Mapping[Path, str], faults: Faults) -> None:
+        self._texts = texts
+        self._faults = faults
+
+    def read(self, path: Path, place: Place, shown: str) -> str | None:
+        """The text; None where there is none, and a fault is noted."""
+        known = self._texts.get(Path(os.path.realpath(path))) if self._texts else None
+        return known if known is not None else self._read(path, place, shown)
+
+    def _read(self, path: Path, place: Place, shown: str) -> str | None:
+        try:
+            with path.open("rb") as file:
+                data = file.read(_LARGEST_BYTES + 1)
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            self._faults.add(place, f"{shown} cannot be read: {reason.lower()}")
+            return None
+        if len(data) > _LARGEST_BYTES:
+            self._faults.add(place, f"{shown} is larger than 1 MB", "a mission is a small text")
+            return None
+        try:
+            return data.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            self._faults.add(place, f"{shown} is not UTF-8 text (byte {error.start})", "save it as UTF-8")
+            return None
 
 
 class _Collector:
     """Walks the includes depth first and gathers parameters and trees."""
 
-    def __init__(self, mission: MissionText, path: Path, faults: Faults) -> None:
+    def __init__(self, mission: MissionText, path: Path, files: _Files, faults: Faults) -> None:
         self._mission = mission
+        self._files = files
         self._faults = faults
         self._folder = Path(os.path.realpath(path.parent))
         self._shown_folder = path.parent
@@ -164,7 +185,7 @@ class _Collector:
         if len(self._mission.included) >= _MOST_FILES:
             self._faults.add(value.place, f"more than {_MOST_FILES} included files")
             return False
-        text = _read_text(real, value.place, value.data, self._faults)
+        text = self._files.read(real, value.place, value.data)
         if text is None:
             return False
         shown = os.path.join(os.path.dirname(value.place.source.name), value.data)

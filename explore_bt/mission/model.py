@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -63,6 +63,8 @@ class Mission:
             relative to the mission's folder): the same wherever the mission lies.
         params: parameter -> value in SI; None where it is not given.
         declared: the parameters' declarations: type, bounds, doc.
+        sources: real path -> text, of the file and the included ones.
+        settings: the overrides, ``name=value``; relative files in them are relative to ``settings_folder``.
         control_rate_hz: a whole multiple of ``tree_rate_hz``.
     """
 
@@ -78,3 +80,6 @@ class Mission:
     limits: LimitsSpec
     included: tuple[Path, ...] = ()
     declared: tuple[Param, ...] = ()
+    sources: Mapping[Path, str] = field(default_factory=dict)
+    settings: tuple[str, ...] = ()
+    settings_folder: Path = Path()

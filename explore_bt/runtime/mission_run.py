@@ -14,7 +14,9 @@ from explore_bt.mission import Mission
 from explore_bt.plugin import Registry
 from explore_bt.runtime.exports import export
 from explore_bt.runtime.observers import Observers
+from explore_bt.runtime.resumption import CutRun
 from explore_bt.runtime.robot import Robot
+from explore_bt.runtime.run_checkpoints import RunCheckpoints
 from explore_bt.runtime.runner import Runner
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.types import Result
@@ -34,6 +36,7 @@ def run_mission(
     seed: int,
     sinks: Sequence[Sink],
     stop: StopFlag,
+    resumed: CutRun | None = None,
 ) -> Result:
     """Run a mission to its end and leave its results in ``out``.
 
@@ -44,6 +47,7 @@ def run_mission(
         seed: of every random draw in the run.
         sinks: observers, in the order they are called.
         stop: raised by anyone who wants the robots to stop.
+        resumed: where the run in ``out`` broke off; None begins one.
 
     Returns:
         What ``result.json`` says.
@@ -51,22 +55,28 @@ def run_mission(
     Raises:
         UserError: the mission asks for something that cannot be had; nothing was written.
     """
-    began_s = time.perf_counter()  # wall time is a figure of the report, never an input of the run
+    # wall time is a figure of the report, never an input of the run
+    began_s = time.perf_counter() - (resumed.memory.wall_time_s if resumed else 0.0)
     observers = Observers(sinks)
     robots = [Robot(spec, mission, seed, stop, observers.event) for spec in mission.robots]
     try:
         for robot in robots:
-            robot.setup()
+            robot.setup(resumed.robots[robot.name] if resumed else None)
         _make_folder(out)
-        observers.open(_run_info(mission, robots, seed, out))
-        runner = Runner(mission, robots, observers, stop)
+        info = _run_info(mission, robots, seed, out, resumed)
+        observers.open(info)
+        observers.past(resumed.past(info) if resumed else ())
+        checkpoints = RunCheckpoints(mission, robots, seed, out, observers.event, began_s, resumed)
+        runner = Runner(mission, robots, observers, stop, resumed=resumed, after_tick=checkpoints.after_tick)
         try:
             runner.run()
         finally:  # nothing mapped is lost, even if the run breaks down inside
             result = _result(mission, robots, runner, seed, time.perf_counter() - began_s)
+            checkpoints.close(runner)
             _export(registry, robots, result, out)
             observers.close(result)
             write_whole(out / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
+        checkpoints.clear(result.outcome)
         return result
     finally:
         for robot in robots:
@@ -80,7 +90,9 @@ def _make_folder(out: Path) -> None:
         raise UserError(f"{out} cannot be made: {error.strerror}; name another folder with --out") from None
 
 
-def _run_info(mission: Mission, robots: Sequence[Robot], seed: int, out: Path) -> RunInfo:
+def _run_info(
+    mission: Mission, robots: Sequence[Robot], seed: int, out: Path, resumed: CutRun | None
+) -> RunInfo:
     return RunInfo(
         mission=mission.name,
         mission_text=mission.text,
@@ -90,6 +102,7 @@ def _run_info(mission: Mission, robots: Sequence[Robot], seed: int, out: Path) -
         folder=out,
         trees={robot.name: robot.tree.infos for robot in robots},
         footprint_radius_m={robot.name: robot.footprint_radius_m for robot in robots},
+        resumed_s=None if resumed is None else next(iter(resumed.robots.values())).resumption.stamp_s,
     )
 
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import (
     ComponentFailure,
     PlanningFailure,
@@ -27,16 +28,18 @@ from explore_bt.interfaces import (
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.health_news import HealthNews
-from explore_bt.runtime.legs import plan_through
 from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
+from explore_bt.runtime.resumption import Cut, check_clock
+from explore_bt.runtime.robot_keeping import Remembering, RobotKeeping
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tight_places import TightPlaces
+from explore_bt.runtime.way_finder import WayFinder
 from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
     Battery,
@@ -45,7 +48,6 @@ from explore_bt.types import (
     Health,
     Measurement,
     MovingObstacle,
-    OccupancyGrid,
     Path,
     Pose2,
     Scan2D,
@@ -88,7 +90,7 @@ class Robot:
         self._measured: list[Measurement] = []
         self._view: MapView | None = None
         self._map_memory = MapMemory()
-        self._planned_on: OccupancyGrid | None = None
+        self._way_finder = WayFinder(self._planner, self.slam, stop)
         self._tight = TightPlaces()
         self._purse = Purse(mission.limits)
         self._slam_fault = ""
@@ -98,14 +100,16 @@ class Robot:
         self._people = People()
         self.moving: tuple[MovingObstacle, ...] = ()
 
-    def setup(self) -> None:
-        """Open the driver, warm everything up.
+    def setup(self, cut: Cut | None = None) -> None:
+        """Open the driver, warm everything up; ``cut`` is where a resumed run broke off.
 
         Raises:
             UserError: whatever the mission asked for cannot be had.
         """
-        context = RobotContext(robot=self.name, seed=self._seed, start=self._spec.start)
+        resumed = cut.resumption if cut else None
+        context = RobotContext(robot=self.name, seed=self._seed, start=self._spec.start, resumed=resumed)
         self.driver.setup(context)
+        check_clock(self.driver, resumed)
         limits = self._mission.limits.apply(self.driver.limits)
         context = replace(
             context,
@@ -114,17 +118,26 @@ class Robot:
             limits=limits,
             truth=self.driver.truth(),
         )
-        self.home = self.driver.start
+        self.home = cut.memory.home if cut else self.driver.start
         warm_up()
-        self.slam.setup(context)
-        if self._spec.saved_map is not None:
-            self.slam.load(self._spec.saved_map)
-        self._poses_before = len(self.slam.trajectory().stamps_s)
+        self.slam.setup(replace(context, start=cut.memory.pose) if cut else context)
+        saved_map = cut.slam_folder if cut else self._spec.saved_map
+        if saved_map is not None:
+            self.slam.load(saved_map)
+        self._poses_before = cut.memory.poses_before if cut else len(self.slam.trajectory().stamps_s)
         self._planner.setup(context)
         self._controller.setup(context)
         gate = SafetyGate(self.driver.footprint_radius_m, limits)
         self.pilot = Pilot(self._controller, gate, self.driver)
         self.scores = Scorekeeper(self.home, context.truth)
+        parts: dict[str, Remembering] = {
+            "scores": self.scores,
+            "purse": self._purse,
+            "tight places": self._tight,
+        }
+        self._keeping = RobotKeeping(self.tree, self.blackboard, parts)
+        if cut is not None:
+            self._restore(cut)
 
     # --- what leaves may ask for -------------------------------------------------------------------
 
@@ -193,8 +206,12 @@ class Robot:
         """
         straight_m = self.estimate().T_map_base.distance_to(goal)
         try:
+            here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
+            grid = self.view().grid
             path = plan_or_squeeze(
-                lambda radius_m: self._plan(goal, via, radius_m), self.footprint_radius_m, straight_m
+                lambda radius_m: self._way_finder.path(grid, here, goal, via, radius_m),
+                self.footprint_radius_m,
+                straight_m,
             )
             return centred(path, self._seen_points(), self.view().grid, self.footprint_radius_m)
         except (PlanningFailure, UserError):
@@ -203,30 +220,6 @@ class Robot:
             failure = ComponentFailure(f"planner {self._planner.name}", repr(error))
             self._note_failure(failure.component, error)
             raise failure from error
-
-    def _plan(self, goal: Pose2, via: Sequence[tuple[float, float]], radius_m: float) -> Path:
-        here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
-        grid = self.view().grid
-        self._tell_change(grid)
-        return plan_through(
-            lambda start, end: self._planner.plan(grid, start, end, radius_m, lambda: self._stop.is_raised),
-            here,
-            via,
-            goal,
-        )
-
-    def _tell_change(self, grid: OccupancyGrid) -> None:
-        """Tell the planner where the map differs from the one planned on before, if SLAM knows.
-
-        A map with tight places marked has cells that SLAM knows nothing of: then nobody knows.
-        """
-        plain = grid if grid is self.slam.grid() else None
-        before, self._planned_on = self._planned_on, plain
-        if before is None or plain is None or before is plain:
-            return
-        window = self.slam.changed_since(before.revision)
-        if window is not None:
-            self._planner.expect_change(before, plain, window)
 
     def avoid(self, position: tuple[float, float]) -> None:
         """Close a place that proved too tight for the safety gate."""
@@ -284,13 +277,30 @@ class Robot:
         return self.tree.root.status
 
     def rest(self) -> None:
-        """Cut the tree off and come to rest."""
+        """Cut the tree off and come to rest; a resumed run goes on where it stood."""
+        self._keeping.rest()
         halt(self.tree.root)
         self.pilot.hold()
 
     def close(self) -> None:
         """Stop the body and let go of it."""
         self.driver.close()
+
+    # --- for checkpoints ----------------------------------------------------------------------------
+
+    def memory(self) -> RobotMemory:
+        """See ``RobotKeeping.memory``."""
+        pose = self.slam.estimate().T_map_base
+        return self._keeping.memory(self.home, pose, self.scores.true_pose, self._poses_before)
+
+    def _restore(self, cut: Cut) -> None:
+        self._keeping.restore(cut.memory)
+        for measurement in cut.measured:
+            self._take(measurement)
+        self._measured = []
+        self.slam.pick_up()
+        if cut.score is not None:
+            self.scores.catch_up(cut.score, cut.true_way)
 
     # --- for observers ------------------------------------------------------------------------------
 
@@ -332,6 +342,7 @@ class Robot:
         if self._slam_fault:
             return
         self._measured.append(measurement)
+        self._keeping.hear(measurement)
         try:
             self.slam.update(measurement)
         except Exception as error:  # a SLAM that raises is lost: the gate brakes, the reason is recorded

@@ -1,0 +1,17 @@
+"""What a run needs to go on after its process has died: values as text, and folders written whole."""
+
+from explore_bt.checkpoint.codec import Codec, CodecError
+from explore_bt.checkpoint.state import Origin, RobotMemory, RunMemory
+from explore_bt.checkpoint.store import Checkpoint, CheckpointError, CheckpointStore, Draft
+
+__all__ = [
+    "Checkpoint",
+    "CheckpointError",
+    "CheckpointStore",
+    "Codec",
+    "CodecError",
+    "Draft",
+    "Origin",
+    "RobotMemory",
+    "RunMemory",
+]
