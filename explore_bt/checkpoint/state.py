@@ -15,8 +15,8 @@ class Origin:
     """Where a run came from: enough to load the very same mission again.
 
     Attributes:
-        mission: absolute path of the mission file.
-        files: absolute path -> text, of the mission and all it includes, as they were when the run began.
+        mission: real path of the mission file.
+        files: real path -> text, of the mission and all it includes, as they were when the run began.
         settings: ``name=value`` of every ``--set``; ``folder`` is what relative files in them relate to.
         sha256: ``Mission.sha256``.
         version: of explore-bt, which began the run.

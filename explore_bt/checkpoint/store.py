@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import os
@@ -9,6 +10,7 @@ import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 from explore_bt.errors import UserError
 
@@ -18,6 +20,7 @@ FORMAT = "explore-bt-checkpoint/1"
 _MANIFEST = "manifest.json"
 _KEPT = 2
 _UNFINISHED = ".unfinished-"
+_LOCK = ".lock"
 
 
 class CheckpointError(UserError):
@@ -87,6 +90,30 @@ class CheckpointStore:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._lock: IO[bytes] | None = None
+
+    def lock(self) -> None:
+        """Keep other processes off this run, until ``unlock`` or until this process is no more.
+
+        Raises:
+            CheckpointError: another process is at work on it.
+        """
+        self.folder.mkdir(parents=True, exist_ok=True)
+        file = (self.folder / _LOCK).open("wb")
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            file.close()
+            raise CheckpointError(
+                f"{self.folder.parent}: another process is at work on this run; wait for its end, or stop it"
+            ) from None
+        self._lock = file
+
+    def unlock(self) -> None:
+        """Let others at it."""
+        if self._lock is not None:
+            self._lock.close()
+            self._lock = None
 
     def begin(self, tick: int, before: Checkpoint | None = None) -> Draft:
         """Start writing the checkpoint of a tick; ``before`` was written by the same run of the program."""

@@ -9,6 +9,8 @@ import typer
 from explore_bt.cli.check import check
 from explore_bt.cli.new_plugin import new_plugin
 from explore_bt.cli.plugins import plugins
+from explore_bt.cli.recover import recover
+from explore_bt.cli.resume import resume
 from explore_bt.cli.run import run
 from explore_bt.cli.schema import schema
 from explore_bt.cli.show import show
@@ -61,6 +63,8 @@ def start(
 
 
 app.command(epilog="Example: explore-bt run 01_apartment --set stride=1.2 --seed 3 --headless")(run)
+app.command(epilog="Example: explore-bt resume runs/apartment-20250101-120000")(resume)
+app.command(epilog="Example: explore-bt recover runs/apartment-20250101-120000")(recover)
 app.command(epilog="Example: explore-bt check missions/mine.yaml --set clearance='0.30 m'")(check)
 app.command(epilog="Example: explore-bt show 01_apartment --dot | dot -Tsvg -o tree.svg")(show)
 app.command(epilog="Example: explore-bt slam intel.clf.bz2 --out runs/intel --odometry")(slam)

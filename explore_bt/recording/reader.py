@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 
 import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Channel, Chunk, Header, Message
+from mcap.records import Channel, Chunk, Header, Message, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from explore_bt.errors import LogError
@@ -52,16 +52,21 @@ class Recording:
     Attributes:
         path: the file.
         topics: all topics of the file, in the order they were declared.
+        schemas: topic -> name of its schema.
         info: the message on ``/run``.
         damage: empty for a whole file, else in words what is missing.
     """
 
-    def __init__(self, path: Path, chunks: list[Chunk], channels: dict[int, str], damage: str) -> None:
+    def __init__(self, path: Path, contents: _Contents) -> None:
         self.path = path
-        self.damage = damage
-        self._chunks = chunks
-        self._channels = channels
-        self.topics = tuple(channels.values())
+        self.damage = contents.damage
+        self._chunks = contents.chunks
+        self._channels = {number: channel.topic for number, channel in contents.channels.items()}
+        self.topics = tuple(self._channels.values())
+        self.schemas = {
+            channel.topic: contents.schemas.get(channel.schema_id, "")
+            for channel in contents.channels.values()
+        }
         self.info = next((message.value for message in self.messages("/run")), {})
 
     @property
@@ -83,17 +88,24 @@ class Recording:
         self, topic: str | None = None, start_s: float = 0.0, end_s: float = float("inf")
     ) -> Iterator[RecordedMessage]:
         """Messages of one topic (None: of all) with ``start_s <= stamp <= end_s``, in file order."""
+        for name, time_ns, data in self._raw(start_s, end_s):
+            stamp_s = time_ns * 1e-9
+            if topic in (None, name) and start_s <= stamp_s <= end_s:
+                yield RecordedMessage(name, stamp_s, json.loads(data))
+
+    def raw_messages(self) -> Iterator[tuple[str, int, bytes]]:
+        """Topic, mission time in nanoseconds and bytes of every message, in file order."""
+        return self._raw(0.0, float("inf"))
+
+    def _raw(self, start_s: float, end_s: float) -> Iterator[tuple[str, int, bytes]]:
+        """Of the chunks that reach into a span of time."""
         for chunk in self._chunks:
             if chunk.message_end_time * 1e-9 < start_s or chunk.message_start_time * 1e-9 > end_s:
                 continue
             for record in breakup_chunk(chunk):
-                if not isinstance(record, Message):
-                    continue
-                name, stamp_s = self._channels.get(record.channel_id), record.log_time * 1e-9
-                if name is None:  # declared in a chunk that was lost
-                    continue
-                if topic in (None, name) and start_s <= stamp_s <= end_s:
-                    yield RecordedMessage(name, stamp_s, json.loads(record.data))
+                if isinstance(record, Message) and record.channel_id in self._channels:
+                    # else declared in a chunk that was lost
+                    yield self._channels[record.channel_id], record.log_time, record.data
 
 
 def read_recording(path: Path) -> Recording:
@@ -120,7 +132,7 @@ def read_recording(path: Path) -> Recording:
             f"{path}: cut off after byte {contents.sound_bytes}, before its first second was written; "
             "nothing can be recovered"
         )
-    return Recording(path, contents.chunks, contents.channels, contents.damage)
+    return Recording(path, contents)
 
 
 @dataclass(slots=True)
@@ -128,7 +140,8 @@ class _Contents:
     """The sound chunks of a file, its channels, and what is wrong with it."""
 
     chunks: list[Chunk] = field(default_factory=list)
-    channels: dict[int, str] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+    schemas: dict[int, str] = field(default_factory=dict)
     unsound: list[int] = field(default_factory=list)
     sound_bytes: int = 0
     whole: bool = False
@@ -140,7 +153,8 @@ class _Contents:
             self.unsound.append(self.sound_bytes)
             return
         self.chunks.append(chunk)
-        self.channels |= {record.id: record.topic for record in records if isinstance(record, Channel)}
+        self.channels |= {record.id: record for record in records if isinstance(record, Channel)}
+        self.schemas |= {record.id: record.name for record in records if isinstance(record, Schema)}
 
     @property
     def damage(self) -> str:
@@ -168,7 +182,9 @@ def _read_contents(path: Path, file: BinaryIO, size: int) -> _Contents:
             if isinstance(record, Chunk):
                 contents.take(record)
             elif isinstance(record, Channel):  # repeated behind the last chunk
-                contents.channels.setdefault(record.id, record.topic)
+                contents.channels.setdefault(record.id, record)
+            elif isinstance(record, Schema):
+                contents.schemas.setdefault(record.id, record.name)
             contents.sound_bytes = file.tell()
         contents.whole = True
     except _BROKEN:

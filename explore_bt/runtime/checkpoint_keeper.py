@@ -17,9 +17,11 @@ from explore_bt.checkpoint import (
     RobotMemory,
     RunMemory,
 )
+from explore_bt.files import sync_files
 from explore_bt.interfaces import Event
 from explore_bt.runtime.kept_values import RUN_FILE, codec_for, robot_file, run_codec, slam_folder
 from explore_bt.runtime.robot import Robot
+from explore_bt.tree import Leaf
 
 __all__ = ["PERIOD_S", "CheckpointKeeper"]
 
@@ -47,7 +49,10 @@ class CheckpointKeeper:
         self._store = store
         self._robots = robots
         self._tell = tell
-        self._codecs = {robot.name: codec_for(robot.tree.nodes) for robot in robots}
+        self._codecs = {
+            robot.name: codec_for(type(node) for node in robot.tree.nodes if isinstance(node, Leaf))
+            for robot in robots
+        }
         self._waits = all(robot.driver.clock.is_simulated for robot in robots)
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="checkpoint")
         self._writing: Future[Checkpoint] | None = None
@@ -61,12 +66,14 @@ class CheckpointKeeper:
         """For how long each checkpoint held the tick thread up, wall time."""
         return self._seconds
 
-    def look(self, run: RunMemory) -> None:
-        """A tick has ended: write a checkpoint if one is due."""
+    def look(self, run: RunMemory, *, waits: bool = False) -> None:
+        """A tick has ended: write a checkpoint if one is due; ``waits``: until it is on the disk."""
         if run.stamp_s < self._due_s or (self._is_busy and not self._waits):
             return
         self._due_s = run.stamp_s + PERIOD_S
         self._take(run)
+        if waits:
+            self._finish()
 
     def close(self, run: RunMemory) -> None:
         """The run is over: a last checkpoint, whole on the disk when this returns."""
@@ -117,7 +124,9 @@ class CheckpointKeeper:
         draft.write(RUN_FILE, run_codec().dumps(run))
         for name, memory in memories.items():
             draft.write(robot_file(name), self._text(name, memory))
-        return draft.commit()
+        checkpoint = draft.commit()
+        sync_files(self._store.folder.parent)
+        return checkpoint
 
     def _text(self, robot: str, memory: RobotMemory) -> str:
         codec = self._codecs[robot]

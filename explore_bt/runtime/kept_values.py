@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from py_trees.behaviour import Behaviour
-
 from explore_bt.checkpoint import Codec, Origin, RobotMemory, RunMemory
 from explore_bt.tree import Leaf
 from explore_bt.types import (
@@ -50,9 +48,9 @@ def run_codec() -> Codec:
     return Codec(_RUN)
 
 
-def codec_for(nodes: Iterable[Behaviour]) -> Codec:
+def codec_for(leaves: Iterable[type[Leaf]]) -> Codec:
     """For one robot's file: the framework's own values, and those that the leaves of its tree declare."""
-    declared = (cls for node in nodes if isinstance(node, Leaf) for cls in node.values)
+    declared = (cls for leaf in leaves for cls in leaf.values)
     return Codec(dict.fromkeys((*_ROBOT, *declared)))
 
 

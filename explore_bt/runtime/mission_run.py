@@ -9,23 +9,25 @@ from pathlib import Path
 
 from explore_bt.errors import UserError
 from explore_bt.files import write_whole
-from explore_bt.interfaces import RobotProduct, RunInfo, Sink
+from explore_bt.interfaces import Event, RobotProduct, RunInfo, Sink
 from explore_bt.mission import Mission
 from explore_bt.plugin import Registry
 from explore_bt.runtime.exports import export
 from explore_bt.runtime.observers import Observers
 from explore_bt.runtime.resumption import CutRun
-from explore_bt.runtime.robot import Robot
+from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.run_checkpoints import RunCheckpoints
 from explore_bt.runtime.runner import Runner
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.types import Result
 from explore_bt.version import __version__
 
-__all__ = ["run_mission"]
+__all__ = ["ENDING_KEYS", "run_mission"]
 
 LEFT_OPEN_KEY = "left_open"
 """Blackboard entry in which a tree lists what it could not explore, one sentence each."""
+ENDING_KEYS = (REASON_KEY, OVER_BUDGET_KEY, LEFT_OPEN_KEY)
+"""Entries in which a tree says how it ended: a run that is resumed after its end has not."""
 
 
 def run_mission(
@@ -65,9 +67,12 @@ def run_mission(
         _make_folder(out)
         info = _run_info(mission, robots, seed, out, resumed)
         observers.open(info)
-        observers.past(resumed.past(info) if resumed else ())
+        if resumed is not None:
+            observers.past(resumed.past(info))
+            observers.event(_going_on(resumed, info))
         checkpoints = RunCheckpoints(mission, robots, seed, out, observers.event, began_s, resumed)
         runner = Runner(mission, robots, observers, stop, resumed=resumed, after_tick=checkpoints.after_tick)
+        checkpoints.begin(runner)
         try:
             runner.run()
         finally:  # nothing mapped is lost, even if the run breaks down inside
@@ -104,6 +109,13 @@ def _run_info(
         footprint_radius_m={robot.name: robot.footprint_radius_m for robot in robots},
         resumed_s=None if resumed is None else next(iter(resumed.robots.values())).resumption.stamp_s,
     )
+
+
+def _going_on(resumed: CutRun, info: RunInfo) -> Event:
+    """What the record says about the seam."""
+    memory, stamp_s = resumed.memory, info.resumed_s or 0.0
+    words = f"part {memory.parts + 1} begins, from the checkpoint at {memory.stamp_s:.1f} s"
+    return Event(stamp_s, "", "info", "mission", words)
 
 
 def _result(

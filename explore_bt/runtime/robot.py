@@ -297,7 +297,7 @@ class Robot:
         self._keeping.restore(cut.memory)
         for measurement in cut.measured:
             self._take(measurement)
-        self._measured = []
+        self._measured, self._scan = [], None
         self.slam.pick_up()
         if cut.score is not None:
             self.scores.catch_up(cut.score, cut.true_way)

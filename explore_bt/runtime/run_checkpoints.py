@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import time
 from collections.abc import Callable, Sequence
@@ -50,7 +51,13 @@ class RunCheckpoints:
         self._origin = resumed.memory.origin if resumed else _origin(mission, seed)
         self._parts = resumed.memory.parts + 1 if resumed else 1
         self._began_s = began_s
-        self._keeper = CheckpointKeeper(CheckpointStore(self._folder), robots, tell)
+        self._store = CheckpointStore(self._folder)
+        self._store.lock()
+        self._keeper = CheckpointKeeper(self._store, robots, tell)
+
+    def begin(self, runner: Runner) -> None:
+        """Before the first tick: from now on there is something to go on from."""
+        self._keeper.look(self._memory(runner), waits=True)
 
     def after_tick(self, runner: Runner) -> None:
         """A tick has ended."""
@@ -62,7 +69,8 @@ class RunCheckpoints:
         self._keeper.close(self._memory(runner))
 
     def clear(self, outcome: Outcome) -> None:
-        """Nothing is left to go on with: the map itself is among the results."""
+        """The run is over; where nothing is left to go on with, the map itself is among the results."""
+        self._store.unlock()
         if outcome is Outcome.EXPLORED:
             shutil.rmtree(self._folder, ignore_errors=True)
 
@@ -81,7 +89,7 @@ class RunCheckpoints:
 
 def _origin(mission: Mission, seed: int) -> Origin:
     return Origin(
-        mission=str(mission.path.absolute()),
+        mission=os.path.realpath(mission.path),
         files={str(path): text for path, text in mission.sources.items()},
         settings=mission.settings,
         folder=str(mission.settings_folder),
