@@ -70,9 +70,7 @@ def main() -> int:
     longest_s = time.monotonic() - begun_s
     expected = _Figures.of(unbroken, unbroken)
     print(f"unbroken: {_words(expected)}")
-    print(
-        f"{'run':>3} {'killed at':>20} {'outcome':>9} {'coverage':>9} {'ATE':>8} {'walls':>7} {'way':>8} {'time':>7}"
-    )
+    print("run            killed at   outcome  coverage      ATE   walls      way    time")
     dice, good = random.Random(given.seed), 0
     for number in range(given.kills):
         folder = given.out / f"{number:02d}"
