@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from explore_bt.cli.check import check
+from explore_bt.cli.compare import compare
 from explore_bt.cli.new_plugin import new_plugin
 from explore_bt.cli.plugins import plugins
 from explore_bt.cli.recover import recover
@@ -65,6 +66,7 @@ def start(
 app.command(epilog="Example: explore-bt run 01_apartment --set stride=1.2 --seed 3 --headless")(run)
 app.command(epilog="Example: explore-bt resume runs/apartment-20250101-120000")(resume)
 app.command(epilog="Example: explore-bt recover runs/apartment-20250101-120000")(recover)
+app.command(epilog="Example: explore-bt compare runs/a runs/b --out a-b.html")(compare)
 app.command(epilog="Example: explore-bt check missions/mine.yaml --set clearance='0.30 m'")(check)
 app.command(epilog="Example: explore-bt show 01_apartment --dot | dot -Tsvg -o tree.svg")(show)
 app.command(epilog="Example: explore-bt slam intel.clf.bz2 --out runs/intel --odometry")(slam)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,18 +14,17 @@ from explore_bt.exploration import ArgumentError, ate_rmse_m
 from explore_bt.files import write_whole
 from explore_bt.interfaces import Event, NodeInfo, RobotContext, RobotProduct, RunInfo, Slam, TickSnapshot
 from explore_bt.plugin import load_plugins
-from explore_bt.recording import RECORDING, Recording, decode_grid, read_recording
+from explore_bt.recording import RECORDING, Recording, read_recording
 from explore_bt.recovery.cut_run import BrokenOff, find_broken_off
-from explore_bt.recovery.messages import number, pose_of, score_of
+from explore_bt.recovery.last_known import recorded_map, recorded_result, recorded_way
+from explore_bt.recovery.messages import number
 from explore_bt.recovery.moments import moments_of
 from explore_bt.recovery.repair import repair
 from explore_bt.report import ReportSink
 from explore_bt.runtime import export
-from explore_bt.types import OccupancyGrid, Outcome, Result, Score, Trajectory
+from explore_bt.types import OccupancyGrid, Result, Trajectory
 
 __all__ = ["Recovered", "recover"]
-
-_RESULT = tuple(field.name for field in fields(Result))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,7 +63,7 @@ def recover(source: Path, out: Path) -> Recovered:
     registry = broken.registry if broken else load_plugins().registry
     out.mkdir(parents=True, exist_ok=True)
     repair(recording, out / RECORDING)
-    result = _result(recording)
+    result = recorded_result(recording)
     for name in recording.robots:
         folder = out if len(recording.robots) == 1 else out / name
         folder.mkdir(exist_ok=True)
@@ -106,9 +103,9 @@ class _Saved:
     @staticmethod
     def of(recording: Recording, name: str, broken: BrokenOff | None, notes: list[str]) -> _Saved:
         saved = _Saved(
-            _recorded_map(recording, name),
-            _way(recording, f"/{name}/pose") or Trajectory(np.empty(0), np.empty((0, 3))),
-            _way(recording, f"/{name}/truth"),
+            recorded_map(recording, name),
+            recorded_way(recording, f"/{name}/pose") or Trajectory(np.empty(0), np.empty((0, 3))),
+            recorded_way(recording, f"/{name}/truth"),
         )
         if broken is not None and name in broken.run.robots:
             try:
@@ -137,73 +134,11 @@ def _slam(broken: BrokenOff, name: str) -> Slam:
     return slam
 
 
-def _recorded_map(recording: Recording, name: str) -> OccupancyGrid:
-    grid = OccupancyGrid(np.empty((0, 0), dtype=np.int8), 0.05, (0.0, 0.0))
-    last = None
-    for last in recording.messages(f"/{name}/map"):  # noqa: B007  # only the last one counts
-        pass
-    return grid if last is None else decode_grid(last.value)
-
-
-def _way(recording: Recording, topic: str) -> Trajectory | None:
-    rows = [(message.stamp_s, pose_of(message.value)) for message in recording.messages(topic)]
-    kept = [(stamp_s, pose) for stamp_s, pose in rows if math.isfinite(pose.x + pose.y + pose.yaw_rad)]
-    if not kept:
-        return None
-    return Trajectory(
-        np.array([stamp_s for stamp_s, _ in kept]), np.array([pose.as_array() for _, pose in kept])
-    )
-
-
-def _result(recording: Recording) -> Result:
-    """As it was recorded, or as the last state of the robots tells."""
-    last = None
-    for last in recording.messages("/result"):  # noqa: B007  # only the last one counts
-        pass
-    if last is not None and last.value.get("outcome") in set(Outcome):
-        return _recorded_result(last.value)
-    info = recording.info
-    scores = [_last_score(recording, name) for name in recording.robots] or [Score()]
-    score = scores[0]
-    return Result(
-        outcome=Outcome.CUT,
-        reason=f"the process died; everything up to {recording.duration_s:.1f} s of mission time was saved",
-        mission=str(info.get("mission", "")),
-        coverage=score.coverage,
-        contacts=score.contacts,
-        touched_by_people=score.touched_by_people,
-        ate_rmse_m=None,
-        path_length_m=score.distance_m,
-        mission_time_s=recording.duration_s,
-        wall_time_s=0.0,
-        min_clearance_m=score.min_clearance_m,
-        mean_clearance_m=score.mean_clearance_m,
-        distance_to_home_m=score.distance_to_home_m,
-        seed=int(number(info.get("seed"), 0.0)),
-        mission_sha256=str(info.get("mission_sha256", "")),
-        version=str(info.get("version", "")),
-    )
-
-
-def _recorded_result(value: Mapping[str, Any]) -> Result:
-    known = {name: value[name] for name in _RESULT if name in value}
-    known["outcome"] = Outcome(value["outcome"])
-    known["left_open"] = tuple(value.get("left_open", ()))
-    return Result(**{"wall_time_s": 0.0, **known})
-
-
-def _last_score(recording: Recording, name: str) -> Score:
-    score = Score()
-    for message in recording.messages(f"/{name}/state", max(recording.duration_s - 10.0, 0.0)):
-        score = score_of(message.value)
-    return score
-
-
 def _with_slam(result: Result, saved: _Saved) -> Result:
     """With SLAM's figures, and the error of its trajectory where the truth is known."""
     figures = dict(saved.slam.figures()) if saved.slam is not None else result.slam
     error_m = result.ate_rmse_m
-    if saved.truth is not None and error_m is None:
+    if saved.truth is not None and saved.slam is not None:
         try:
             error_m = ate_rmse_m(saved.trajectory, saved.truth)
         except ArgumentError:  # too short for the two to overlap

@@ -24,6 +24,7 @@ from explore_bt.version import __version__
 
 __all__ = ["ENDING_KEYS", "run_mission"]
 
+RESULT = "result.json"
 LEFT_OPEN_KEY = "left_open"
 """Blackboard entry in which a tree lists what it could not explore, one sentence each."""
 ENDING_KEYS = (REASON_KEY, OVER_BUDGET_KEY, LEFT_OPEN_KEY)
@@ -68,6 +69,7 @@ def run_mission(
         info = _run_info(mission, robots, seed, out, resumed)
         observers.open(info)
         if resumed is not None:
+            (out / RESULT).unlink(missing_ok=True)  # of the part before: it does not tell of this one
             observers.past(resumed.past(info))
             observers.event(_going_on(resumed, info))
         checkpoints = RunCheckpoints(mission, robots, seed, out, observers.event, began_s, resumed)
@@ -80,7 +82,7 @@ def run_mission(
             checkpoints.close(runner)
             _export(registry, robots, result, out)
             observers.close(result)
-            write_whole(out / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
+            write_whole(out / RESULT, json.dumps(result.as_dict(), indent=2) + "\n")
         checkpoints.clear(result.outcome)
         return result
     finally:
