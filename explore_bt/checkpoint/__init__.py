@@ -1,6 +1,7 @@
 """What a run needs to go on after its process has died: values as text, and folders written whole."""
 
 from explore_bt.checkpoint.codec import Codec, CodecError
+from explore_bt.checkpoint.recent import Recent, read_recent, write_recent
 from explore_bt.checkpoint.state import Origin, RobotMemory, RunMemory
 from explore_bt.checkpoint.store import Checkpoint, CheckpointError, CheckpointStore, Draft
 
@@ -12,6 +13,9 @@ __all__ = [
     "CodecError",
     "Draft",
     "Origin",
+    "Recent",
     "RobotMemory",
     "RunMemory",
+    "read_recent",
+    "write_recent",
 ]

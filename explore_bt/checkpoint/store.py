@@ -7,10 +7,10 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
 
 from explore_bt.errors import UserError
 
@@ -90,30 +90,23 @@ class CheckpointStore:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._lock: IO[bytes] | None = None
 
-    def lock(self) -> None:
-        """Keep other processes off this run, until ``unlock`` or until this process is no more.
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Keep other processes off this run while inside, or until this process is no more.
 
         Raises:
             CheckpointError: another process is at work on it.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
-        file = (self.folder / _LOCK).open("wb")
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            file.close()
-            raise CheckpointError(
-                f"{self.folder.parent}: another process is at work on this run; wait for its end, or stop it"
-            ) from None
-        self._lock = file
-
-    def unlock(self) -> None:
-        """Let others at it."""
-        if self._lock is not None:
-            self._lock.close()
-            self._lock = None
+        with (self.folder / _LOCK).open("wb") as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                raise CheckpointError(
+                    f"{self.folder.parent}: another process is at work on it; wait for its end, or stop it"
+                ) from None
+            yield
 
     def begin(self, tick: int, before: Checkpoint | None = None) -> Draft:
         """Start writing the checkpoint of a tick; ``before`` was written by the same run of the program."""

@@ -48,8 +48,7 @@ def resume(
     for note in broken.notes:
         typer.echo(f"note       {note}")
     cut, seed = broken.run, broken.run.memory.origin.seed
-    stamp_s = next(iter(cut.robots.values())).resumption.stamp_s
-    typer.echo(f"{run}: goes on at {duration(stamp_s)}, part {cut.memory.parts + 1}: getting ready")
+    typer.echo(f"{run}: goes on at {duration(cut.stamp_s)}, part {cut.memory.parts + 1}: getting ready")
     sinks = make_sinks(broken.registry, sink or (), live=not headless and sys.stdout.isatty())
     with run_log(run / "run.log", verbose=verbose, goes_on=True):
         result = drive(broken.mission, broken.registry, run, seed, sinks, cut)

@@ -13,8 +13,10 @@ from explore_bt.checkpoint import (
     CheckpointError,
     CheckpointStore,
     CodecError,
+    Recent,
     RobotMemory,
     RunMemory,
+    read_recent,
 )
 from explore_bt.errors import MissionError, UserError
 from explore_bt.interfaces import Resumption
@@ -75,7 +77,10 @@ def find_broken_off(folder: Path, settings: Sequence[str] = ()) -> BrokenOff:
     _check_open(folder, memory, settings)
     mission, registry, changes = _mission(memory, settings)
     recording, lost = _recording(folder, memory)
-    robots = {robot.name: _robot_memory(checkpoint, mission, robot.name) for robot in mission.robots}
+    recent = read_recent(checkpoint.folder.parent)
+    if recent is not None and recent.tick < memory.tick:
+        recent = None
+    robots = {robot.name: _robot_memory(checkpoint, mission, robot.name, recent) for robot in mission.robots}
     tick = memory.tick
     if recording is not None:
         tick = max(tick, math.ceil(recording.duration_s * mission.tree_rate_hz - _NOT_BEFORE))
@@ -179,17 +184,21 @@ def _recording(folder: Path, memory: RunMemory) -> tuple[Recording | None, list[
     return recording, []
 
 
-def _robot_memory(checkpoint: Checkpoint, mission: Mission, name: str) -> RobotMemory:
+def _robot_memory(checkpoint: Checkpoint, mission: Mission, name: str, recent: Recent | None) -> RobotMemory:
+    """As in the checkpoint, with what the robot had in mind a second before the end."""
     tree = next(robot.tree for robot in mission.robots if robot.name == name)
     leaves = [node.leaf for node in tree.walk() if node.leaf is not None]
-    file = robot_file(name)
+    file, codec = robot_file(name), codec_for(leaves)
     try:
-        memory = codec_for(leaves).loads(checkpoint.read(file))
+        memory = codec.loads(checkpoint.read(file))
+        newer = codec.loads(recent.robots[name]) if recent and name in recent.robots else memory
     except (CodecError, OSError) as fault:
         raise CheckpointError(f"{checkpoint.folder / file} cannot be read: {fault}") from None
-    if not isinstance(memory, RobotMemory):
+    if not isinstance(memory, RobotMemory) or not isinstance(newer, RobotMemory):
         raise CheckpointError(f"{checkpoint.folder / file} tells of no robot")
-    return memory
+    return replace(
+        memory, blackboard=newer.blackboard, nodes=newer.nodes, parts={**memory.parts, **newer.parts}
+    )
 
 
 def _cut(

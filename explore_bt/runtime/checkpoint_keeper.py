@@ -14,8 +14,10 @@ from explore_bt.checkpoint import (
     Codec,
     CodecError,
     Draft,
+    Recent,
     RobotMemory,
     RunMemory,
+    write_recent,
 )
 from explore_bt.files import sync_files
 from explore_bt.interfaces import Event
@@ -27,6 +29,10 @@ __all__ = ["PERIOD_S", "CheckpointKeeper"]
 
 PERIOD_S = 5.0
 """Mission time between two checkpoints."""
+RECENT_PERIOD_S = 1.0
+"""Mission time between two looks at what the robots have in mind."""
+LARGE_PARTS = ("scores",)
+"""Left out of what is written every second; the recording has the scores."""
 
 _log = logging.getLogger("explore_bt")
 
@@ -57,18 +63,19 @@ class CheckpointKeeper:
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="checkpoint")
         self._writing: Future[Checkpoint] | None = None
         self._last: Checkpoint | None = None
-        self._due_s = 0.0
+        self._due_s = self._note_due_s = 0.0
         self._left_out: set[str] = set()
         self._seconds: list[float] = []
 
     @property
     def seconds(self) -> Sequence[float]:
-        """For how long each checkpoint held the tick thread up, wall time."""
+        """What each checkpoint took of the tick thread, wall time; waiting in simulated time does not count."""
         return self._seconds
 
     def look(self, run: RunMemory, *, waits: bool = False) -> None:
         """A tick has ended: write a checkpoint if one is due; ``waits``: until it is on the disk."""
         if run.stamp_s < self._due_s or (self._is_busy and not self._waits):
+            self._note(run)
             return
         self._due_s = run.stamp_s + PERIOD_S
         self._take(run)
@@ -83,19 +90,30 @@ class CheckpointKeeper:
         if self._seconds:
             most, whole = max(self._seconds), sum(self._seconds)
             _log.info(
-                "%d checkpoints held the run up for %.0f ms in all, at most %.1f ms each",
+                "%d checkpoints took %.0f ms of the control loop's time in all, at most %.1f ms each",
                 len(self._seconds),
                 1000.0 * whole,
                 1000.0 * most,
             )
+
+    def _note(self, run: RunMemory) -> None:
+        """Write down what the robots have in mind, if a second has passed."""
+        if run.stamp_s < self._note_due_s:
+            return
+        self._note_due_s = run.stamp_s + RECENT_PERIOD_S
+        try:
+            texts = {robot.name: self._text(robot.name, _small(robot.memory())) for robot in self._robots}
+            write_recent(self._store.folder, Recent(run.tick, texts))
+        except Exception as fault:
+            self._complain(run.stamp_s, fault)
 
     @property
     def _is_busy(self) -> bool:
         return self._writing is not None and not self._writing.done()
 
     def _take(self, run: RunMemory) -> None:
-        begun_s = time.perf_counter()  # of the wall: a figure, never an input of the run
         self._finish()
+        begun_s = time.perf_counter()  # of the wall: a figure, never an input of the run
         try:
             draft = self._store.begin(run.tick, self._last)
             memories = {robot.name: robot.memory() for robot in self._robots}
@@ -161,3 +179,8 @@ class CheckpointKeeper:
             self._left_out.add(words)
             _log.error("%s", words, exc_info=fault)
             self._tell(Event(stamp_s, "", "warning", "checkpoint", words))
+
+
+def _small(memory: RobotMemory) -> RobotMemory:
+    parts = {name: part for name, part in memory.parts.items() if name not in LARGE_PARTS}
+    return replace(memory, parts=parts)

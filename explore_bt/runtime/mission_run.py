@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+from explore_bt.checkpoint import CheckpointStore
 from explore_bt.errors import UserError
 from explore_bt.files import write_whole
 from explore_bt.interfaces import Event, RobotProduct, RunInfo, Sink
@@ -16,7 +18,7 @@ from explore_bt.runtime.exports import export
 from explore_bt.runtime.observers import Observers
 from explore_bt.runtime.resumption import CutRun
 from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
-from explore_bt.runtime.run_checkpoints import RunCheckpoints
+from explore_bt.runtime.run_checkpoints import CHECKPOINTS, RunCheckpoints
 from explore_bt.runtime.runner import Runner
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.types import Result
@@ -66,28 +68,56 @@ def run_mission(
         for robot in robots:
             robot.setup(resumed.robots[robot.name] if resumed else None)
         _make_folder(out)
-        info = _run_info(mission, robots, seed, out, resumed)
-        observers.open(info)
-        if resumed is not None:
-            (out / RESULT).unlink(missing_ok=True)  # of the part before: it does not tell of this one
-            observers.past(resumed.past(info))
-            observers.event(_going_on(resumed, info))
-        checkpoints = RunCheckpoints(mission, robots, seed, out, observers.event, began_s, resumed)
-        runner = Runner(mission, robots, observers, stop, resumed=resumed, after_tick=checkpoints.after_tick)
-        checkpoints.begin(runner)
-        try:
-            runner.run()
-        finally:  # nothing mapped is lost, even if the run breaks down inside
-            result = _result(mission, robots, runner, seed, time.perf_counter() - began_s)
-            checkpoints.close(runner)
-            _export(registry, robots, result, out)
-            observers.close(result)
-            write_whole(out / RESULT, json.dumps(result.as_dict(), indent=2) + "\n")
-        checkpoints.clear(result.outcome)
-        return result
+        with CheckpointStore(out / CHECKPOINTS).locked():
+            return _run(mission, robots, observers, stop, registry, _Run(out, seed, began_s, resumed))
     finally:
         for robot in robots:
             robot.close()
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """Where the results go, and since when; ``began_s`` is a reading of ``time.perf_counter``."""
+
+    out: Path
+    seed: int
+    began_s: float
+    resumed: CutRun | None
+
+    @property
+    def wall_time_s(self) -> float:
+        return time.perf_counter() - self.began_s
+
+
+def _run(
+    mission: Mission,
+    robots: Sequence[Robot],
+    observers: Observers,
+    stop: StopFlag,
+    registry: Registry,
+    run: _Run,
+) -> Result:
+    """From the first tick to the files."""
+    out, resumed = run.out, run.resumed
+    info = _run_info(mission, robots, run)
+    observers.open(info)
+    if resumed is not None:
+        (out / RESULT).unlink(missing_ok=True)  # of the part before: it does not tell of this one
+        observers.past(resumed.past(info))
+        observers.event(_going_on(resumed, info))
+    checkpoints = RunCheckpoints(mission, robots, run.seed, out, observers.event, run.began_s, resumed)
+    runner = Runner(mission, robots, observers, stop, resumed=resumed, after_tick=checkpoints.after_tick)
+    try:
+        checkpoints.begin(runner)
+        runner.run()
+    finally:  # nothing mapped is lost, even if the run breaks down inside
+        result = _result(mission, robots, runner, run.seed, run.wall_time_s)
+        checkpoints.close(runner)
+        _export(registry, robots, result, out)
+        observers.close(result)
+        write_whole(out / RESULT, json.dumps(result.as_dict(), indent=2) + "\n")
+    checkpoints.clear(result.outcome)
+    return result
 
 
 def _make_folder(out: Path) -> None:
@@ -97,19 +127,17 @@ def _make_folder(out: Path) -> None:
         raise UserError(f"{out} cannot be made: {error.strerror}; name another folder with --out") from None
 
 
-def _run_info(
-    mission: Mission, robots: Sequence[Robot], seed: int, out: Path, resumed: CutRun | None
-) -> RunInfo:
+def _run_info(mission: Mission, robots: Sequence[Robot], run: _Run) -> RunInfo:
     return RunInfo(
         mission=mission.name,
         mission_text=mission.text,
         mission_sha256=mission.sha256,
-        seed=seed,
+        seed=run.seed,
         version=__version__,
-        folder=out,
+        folder=run.out,
         trees={robot.name: robot.tree.infos for robot in robots},
         footprint_radius_m={robot.name: robot.footprint_radius_m for robot in robots},
-        resumed_s=None if resumed is None else next(iter(resumed.robots.values())).resumption.stamp_s,
+        resumed_s=None if run.resumed is None else run.resumed.stamp_s,
     )
 
 

@@ -51,6 +51,11 @@ class CutRun:
     robots: Mapping[str, Cut]
     past: Callable[[RunInfo], Iterable[TickSnapshot | Event]] = lambda _: ()
 
+    @property
+    def stamp_s(self) -> float:
+        """Mission time at which it goes on."""
+        return next(iter(self.robots.values())).resumption.stamp_s
+
 
 def check_clock(driver: Driver, resumed: Resumption | None) -> None:
     """Refuse a driver that begins anew where it was to go on.

@@ -51,9 +51,7 @@ class RunCheckpoints:
         self._origin = resumed.memory.origin if resumed else _origin(mission, seed)
         self._parts = resumed.memory.parts + 1 if resumed else 1
         self._began_s = began_s
-        self._store = CheckpointStore(self._folder)
-        self._store.lock()
-        self._keeper = CheckpointKeeper(self._store, robots, tell)
+        self._keeper = CheckpointKeeper(CheckpointStore(self._folder), robots, tell)
 
     def begin(self, runner: Runner) -> None:
         """Before the first tick: from now on there is something to go on from."""
@@ -69,8 +67,7 @@ class RunCheckpoints:
         self._keeper.close(self._memory(runner))
 
     def clear(self, outcome: Outcome) -> None:
-        """The run is over; where nothing is left to go on with, the map itself is among the results."""
-        self._store.unlock()
+        """Nothing is left to go on with: the map itself is among the results."""
         if outcome is Outcome.EXPLORED:
             shutil.rmtree(self._folder, ignore_errors=True)
 
