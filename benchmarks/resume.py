@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -97,7 +98,7 @@ def _broken_run(mission: str, folder: Path, longest_s: float, number: int, dice:
     in_checkpoint = number % 2 == 1
     moments = [_killed("run", mission, folder, longest_s, in_checkpoint, dice)]
     if number % 5 == 4:
-        moments.append(_killed("resume", str(folder), folder, 0.5 * longest_s, in_checkpoint, dice))
+        moments.append(_killed("resume", str(folder), folder, 0.3 * longest_s, in_checkpoint, dice))
     if not (folder / "result.json").exists():
         _wait(_start("resume", str(folder), "--headless"))
     return moments
@@ -106,7 +107,10 @@ def _broken_run(mission: str, folder: Path, longest_s: float, number: int, dice:
 def _killed(
     command: str, what: str, folder: Path, longest_s: float, in_checkpoint: bool, dice: random.Random
 ) -> str:
-    """Start, kill at a random moment, and say at which mission time that was."""
+    """Start, kill at a random moment, and say at which mission time that was.
+
+    A run that has ended before its moment came is begun again; one that is resumed may do so.
+    """
     out = ["--out", str(folder)] if command == "run" else []
     before = _checkpoints(folder)
     process = _start(command, what, "--headless", *out)
@@ -118,8 +122,14 @@ def _killed(
         time.sleep(_POLL_S)
     while in_checkpoint and process.poll() is None and not list(folder.glob("checkpoint/.unfinished-*")):
         time.sleep(_POLL_S)
+    has_ended = process.poll() is not None
     process.send_signal(signal.SIGKILL)
     process.wait()
+    if has_ended and command == "run":
+        shutil.rmtree(folder)
+        return _killed(command, what, folder, 0.8 * longest_s, in_checkpoint, dice)
+    if has_ended:
+        return "(ended)"
     torn = "*" if list(folder.glob("checkpoint/.unfinished-*")) else ""
     return f"{read_recording(folder / 'recording.mcap').duration_s:.1f} s{torn}"
 

@@ -69,7 +69,7 @@ class CheckpointKeeper:
 
     @property
     def seconds(self) -> Sequence[float]:
-        """What each checkpoint took of the tick thread, wall time; waiting in simulated time does not count."""
+        """Wall time that each checkpoint took of the tick thread, waiting for the one before aside."""
         return self._seconds
 
     def look(self, run: RunMemory, *, waits: bool = False) -> None:
