@@ -27,6 +27,7 @@ from explore_bt.interfaces import (
 )
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
+from explore_bt.runtime.fault_log import FaultLog
 from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
@@ -94,7 +95,7 @@ class Robot:
         self._tight = TightPlaces()
         self._purse = Purse(mission.limits)
         self._slam_fault = ""
-        self._logged: set[tuple[str, str]] = set()
+        self._faults = FaultLog(self.name, self.tell)
         self._health_news = HealthNews()
         self._gate_reason = ""
         self._people = People()
@@ -218,7 +219,7 @@ class Robot:
             raise
         except Exception as error:
             failure = ComponentFailure(f"planner {self._planner.name}", repr(error))
-            self._note_failure(failure.component, error)
+            self._faults.note(failure.component, error)
             raise failure from error
 
     def avoid(self, position: tuple[float, float]) -> None:
@@ -251,7 +252,7 @@ class Robot:
         try:
             self.pilot.step(self.estimate(), self._scan, now_s, dt_s)
         except Exception as error:  # any plugin's failure ends in a controlled stop, never in a crash
-            self._note_failure(f"controller {self._controller.name}", error)
+            self._faults.note(f"controller {self._controller.name}", error)
             self.pilot.brake(f"controller {self._controller.name} failed: {error!r}", now_s, dt_s)
         self._watch_gate()
         pose = self.pilot.predict(self.estimate(), now_s).T_map_base
@@ -347,15 +348,7 @@ class Robot:
             self.slam.update(measurement)
         except Exception as error:  # a SLAM that raises is lost: the gate brakes, the reason is recorded
             self._slam_fault = f"slam {self.slam.name} failed: {error!r}"
-            self._note_failure(f"slam {self.slam.name}", error)
-
-    def _note_failure(self, component: str, error: Exception) -> None:
-        """Tell the observers; the log gets the traceback too, once for every fault."""
-        fault = (component, repr(error))
-        self.tell("error", *fault)
-        if fault not in self._logged:
-            self._logged.add(fault)
-            _log.error("robot %s: %s failed", self.name, component, exc_info=error)
+            self._faults.note(f"slam {self.slam.name}", error)
 
     def _show_gate(self) -> None:
         assert self._scan is not None
@@ -386,7 +379,7 @@ class Robot:
         try:
             return self.driver.read()
         except Exception as error:  # silence is handled: a stale scan brakes the robot
-            self._note_failure(f"driver {self.driver.name}", error)
+            self._faults.note(f"driver {self.driver.name}", error)
             return ()
 
     def _watch_health(self) -> None:

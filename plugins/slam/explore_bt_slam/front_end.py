@@ -134,6 +134,8 @@ class FrontEnd:
             return self._carried(scan, prediction)
         if self._is_astray:
             prediction, self._is_astray = self._placed(points, prediction), False
+            # it did not come here during this sweep: nothing of that way may bend it
+            last = prediction.compose(self._filter.motion.inverse())
         elif self._filter.is_blind and self._points.shape[0]:
             prediction = self._guessed(points, last, prediction)
         found = self._refine(points, self._kiss.align(points, prediction), prediction, covariance)
