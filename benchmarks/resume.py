@@ -70,7 +70,7 @@ def main() -> int:
     _wait(_start("run", given.mission, "--headless", "--out", str(unbroken)))
     longest_s = time.monotonic() - begun_s
     expected = _Figures.of(unbroken, unbroken)
-    print(f"unbroken: {_words(expected)}")
+    print(f"unbroken: {_words(expected)}; {_cost(unbroken)}")
     print("run            killed at   outcome  coverage      ATE   walls      way    time")
     dice, good = random.Random(given.seed), 0
     for number in range(given.kills):
@@ -163,6 +163,12 @@ def _walls_apart_m(one: OccupancyGrid, other: OccupancyGrid) -> float:
     cells = other.cells_of(one.centers_of(np.column_stack((rows, cols)))) + 100
     inside = ((cells >= 0) & (cells < np.array(free.shape))).all(axis=1)
     return float(away_m[cells[inside, 0], cells[inside, 1]].mean())
+
+
+def _cost(folder: Path) -> str:
+    """What the log says that checkpoints cost."""
+    lines = [line for line in (folder / "run.log").read_text().splitlines() if "checkpoints took" in line]
+    return lines[-1].split("INFO ")[-1] if lines else ""
 
 
 def _words(figures: _Figures) -> str:

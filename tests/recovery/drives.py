@@ -44,7 +44,8 @@ def drive(
     seed: int = 2,
 ) -> Result:
     """A run from its beginning; ``cut`` copies its folder on the way, ``stop_at`` presses Ctrl-C."""
-    return _run(load_mission(mission, load_plugins().registry, settings), out, None, cut, stop_at, seed)
+    registry = load_plugins(inline_dir=mission.parent).registry
+    return _run(load_mission(mission, registry, settings), out, None, cut, stop_at, seed)
 
 
 def resume(out: Path, *settings: str, cut: CutAt | None = None, stop_at: float = 0.0) -> Result:
