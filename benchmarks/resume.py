@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import logging
 import random
-import shutil
 import signal
 import subprocess
 import sys
@@ -23,13 +23,19 @@ import cv2
 import numpy as np
 from machine import describe_machine
 
+from explore_bt.checkpoint import read_recent
+from explore_bt.files import missions_folder
 from explore_bt.maps import read_map
-from explore_bt.recording import read_recording
+from explore_bt.mission import load_mission
+from explore_bt.plugin import load_plugins
+from explore_bt.recording import RECORDING, read_recording
+from explore_bt.runtime import CHECKPOINTS, StopFlag, run_mission
 from explore_bt.types import OCCUPIED, OccupancyGrid
 
 _COVERAGE = 0.01
 _ERROR_M = 0.02
-_POLL_S = 0.0005
+_POLL_S = 0.001
+_TREE_HZ = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,16 +72,14 @@ def main() -> int:
     given = parser.parse_args()
     print(describe_machine())
     unbroken = given.out / "unbroken"
-    begun_s = time.monotonic()
-    _wait(_start("run", given.mission, "--headless", "--out", str(unbroken)))
-    longest_s = time.monotonic() - begun_s
+    cost = _run_unbroken(given.mission, unbroken)
     expected = _Figures.of(unbroken, unbroken)
-    print(f"unbroken: {_words(expected)}; {_cost(unbroken)}")
+    print(f"unbroken: {_words(expected)}; {cost}")
     print("run            killed at   outcome  coverage      ATE   walls      way    time")
     dice, good = random.Random(given.seed), 0
     for number in range(given.kills):
         folder = given.out / f"{number:02d}"
-        moments = _broken_run(given.mission, folder, longest_s, number, dice)
+        moments = _broken_run(given.mission, folder, 0.95 * expected.time_s, number, dice)
         found = _Figures.of(folder, unbroken)
         is_good = (
             found.outcome == expected.outcome
@@ -93,51 +97,59 @@ def main() -> int:
     return 0 if good == given.kills else 1
 
 
+def _run_unbroken(mission: str, folder: Path) -> str:
+    """The mission in this process, and what its log says that checkpoints cost."""
+    lines: list[str] = []
+    handler = logging.Handler()
+    handler.emit = lambda record: lines.append(record.getMessage())  # type: ignore[method-assign]
+    logger = logging.getLogger("explore_bt")
+    logger.addHandler(handler)
+    logger.setLevel(logging.DEBUG)
+    registry = load_plugins().registry
+    sinks = [registry.get("sink", name) for name in ("mcap", "report")]
+    run_mission(
+        load_mission(missions_folder() / f"{mission}.yaml", registry),
+        registry=registry,
+        out=folder,
+        seed=0,
+        sinks=[sink(sink.Options()) for sink in sinks],
+        stop=StopFlag(),
+    )
+    return next((line for line in lines if "checkpoints took" in line), "no checkpoint")
+
+
 def _broken_run(mission: str, folder: Path, longest_s: float, number: int, dice: random.Random) -> list[str]:
     """Run, kill, resume to the end; the moments of the kills in words."""
     in_checkpoint = number % 2 == 1
-    moments = [_killed("run", mission, folder, longest_s, in_checkpoint, dice)]
+    first_s = dice.uniform(0.0, longest_s)
+    moments = [_killed(["run", mission, "--out", str(folder)], folder, first_s, in_checkpoint)]
     if number % 5 == 4:
-        moments.append(_killed("resume", str(folder), folder, 0.3 * longest_s, in_checkpoint, dice))
+        second_s = dice.uniform(first_s, longest_s)
+        moments.append(_killed(["resume", str(folder)], folder, second_s, in_checkpoint))
     if not (folder / "result.json").exists():
         _wait(_start("resume", str(folder), "--headless"))
     return moments
 
 
-def _killed(
-    command: str, what: str, folder: Path, longest_s: float, in_checkpoint: bool, dice: random.Random
-) -> str:
-    """Start, kill at a random moment, and say at which mission time that was.
-
-    A run that has ended before its moment came is begun again; one that is resumed may do so.
-    """
-    out = ["--out", str(folder)] if command == "run" else []
-    before = _checkpoints(folder)
-    process = _start(command, what, "--headless", *out)
-    while process.poll() is None and _checkpoints(folder) <= before:
-        time.sleep(_POLL_S)  # until the mission is under way
-    share = dice.random()
-    until_s = time.monotonic() + 0.8 * share * longest_s
-    while process.poll() is None and time.monotonic() < until_s:
+def _killed(command: list[str], folder: Path, moment_s: float, in_checkpoint: bool) -> str:
+    """Start, kill at about a mission time (or while the next checkpoint is written), and say what it was."""
+    process = _start(*command, "--headless")
+    while process.poll() is None and _mission_time_s(folder) < moment_s:
         time.sleep(_POLL_S)
     while in_checkpoint and process.poll() is None and not list(folder.glob("checkpoint/.unfinished-*")):
         time.sleep(_POLL_S)
-    has_ended = process.poll() is not None
+    if process.poll() is not None:
+        return "(ended)"
     process.send_signal(signal.SIGKILL)
     process.wait()
-    if has_ended and command == "run":
-        shutil.rmtree(folder)
-        return _killed(command, what, folder, 0.8 * longest_s, in_checkpoint, dice)
-    if has_ended:
-        return "(ended)"
     torn = "*" if list(folder.glob("checkpoint/.unfinished-*")) else ""
-    return f"{read_recording(folder / 'recording.mcap').duration_s:.1f} s{torn}"
+    return f"{read_recording(folder / RECORDING).duration_s:.1f} s{torn}"
 
 
-def _checkpoints(folder: Path) -> int:
-    """Tick of the newest checkpoint, -1 without any."""
-    names = [each.name for each in folder.glob("checkpoint/*") if each.name.isdecimal()]
-    return max(map(int, names), default=-1)
+def _mission_time_s(folder: Path) -> float:
+    """To the second; -1 before the first."""
+    recent = read_recent(folder / CHECKPOINTS)
+    return -1.0 if recent is None else recent.tick / _TREE_HZ
 
 
 def _start(*words: str) -> subprocess.Popen[bytes]:
@@ -163,12 +175,6 @@ def _walls_apart_m(one: OccupancyGrid, other: OccupancyGrid) -> float:
     cells = other.cells_of(one.centers_of(np.column_stack((rows, cols)))) + 100
     inside = ((cells >= 0) & (cells < np.array(free.shape))).all(axis=1)
     return float(away_m[cells[inside, 0], cells[inside, 1]].mean())
-
-
-def _cost(folder: Path) -> str:
-    """What the log says that checkpoints cost."""
-    lines = [line for line in (folder / "run.log").read_text().splitlines() if "checkpoints took" in line]
-    return lines[-1].split("INFO ")[-1] if lines else ""
 
 
 def _words(figures: _Figures) -> str:

@@ -21,7 +21,7 @@ __all__ = ["compare"]
 @guarded
 def compare(
     runs: Annotated[
-        list[Path], typer.Argument(metavar="RUN RUN...", help="Run folders, or recordings; two or more.")
+        list[Path], typer.Argument(metavar="RUN", help="Run folders, or recordings; two or more.")
     ],
     out: Annotated[Path, typer.Option(metavar="FILE", help="The page with the maps side by side.")] = Path(
         "compare.html"
@@ -30,7 +30,9 @@ def compare(
         bool, typer.Option("--json", help="Figures for programs on the standard output; no page.")
     ] = False,
 ) -> None:
-    """Compare runs: their figures in a table, their maps side by side on a page that opens offline.
+    """Compare runs: figures in a table, maps side by side.
+
+    The page with the maps opens offline.
 
     A run that was cut off counts as far as it was recorded. Differences are against the first run.
     """

@@ -25,7 +25,9 @@ def recover(
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what is in that folder.")] = False,
 ) -> None:
-    """Save what a killed run left: a whole recording, map, trajectory and report.
+    """Save what a killed run left.
+
+    A whole recording, map, trajectory and report.
 
     Nothing in RUN is changed. Map and trajectory hold everything up to the last recorded second where the
     run folder has a checkpoint; of a recording alone they are as it was recorded, at most 2 s older.

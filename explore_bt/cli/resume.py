@@ -35,7 +35,9 @@ def resume(
     sink: SinkOption = None,
     verbose: VerboseOption = False,
 ) -> None:
-    """Go on with a run that was killed, stopped or ran out of budget, in the same map.
+    """Go on with a run that broke off, in the same map.
+
+    Killed, stopped by hand or out of budget: all the same.
 
     The mission is the one the run began with, even if its file has changed since; distance, time and
     recording go on where they stood. A run that used up its budget needs more: --set limits.time='40 min'.

@@ -66,11 +66,7 @@ class CheckpointKeeper:
         self._due_s = self._note_due_s = 0.0
         self._left_out: set[str] = set()
         self._seconds: list[float] = []
-
-    @property
-    def seconds(self) -> Sequence[float]:
-        """Wall time that each checkpoint took of the tick thread, waiting for the one before aside."""
-        return self._seconds
+        """Wall time that each took of the tick thread, waiting for the one before aside."""
 
     def look(self, run: RunMemory, *, waits: bool = False) -> None:
         """A tick has ended: write a checkpoint if one is due; ``waits``: until it is on the disk."""
@@ -89,7 +85,7 @@ class CheckpointKeeper:
         self._writer.shutdown()
         if self._seconds:
             most, whole = max(self._seconds), sum(self._seconds)
-            _log.info(
+            _log.debug(
                 "%d checkpoints took %.0f ms of the control loop's time in all, at most %.1f ms each",
                 len(self._seconds),
                 1000.0 * whole,

@@ -214,7 +214,7 @@ class Robot:
                 self.footprint_radius_m,
                 straight_m,
             )
-            return centred(path, self._seen_points(), self.view().grid, self.footprint_radius_m)
+            return centred(path, self._seen_points(), grid, self.footprint_radius_m)
         except (PlanningFailure, UserError):
             raise
         except Exception as error:

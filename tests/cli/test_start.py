@@ -9,7 +9,19 @@ from typer.testing import CliRunner
 from explore_bt.cli import app
 from explore_bt.version import __version__
 
-COMMANDS = ("run", "check", "show", "slam", "world", "schema", "plugins", "new-plugin")
+COMMANDS = (
+    "run",
+    "resume",
+    "recover",
+    "compare",
+    "check",
+    "show",
+    "slam",
+    "world",
+    "schema",
+    "plugins",
+    "new-plugin",
+)
 
 
 def test_explore_bt_alone_shows_five_commands_and_an_example():
