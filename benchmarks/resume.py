@@ -79,7 +79,7 @@ def main() -> int:
     dice, good = random.Random(given.seed), 0
     for number in range(given.kills):
         folder = given.out / f"{number:02d}"
-        moments = _broken_run(given.mission, folder, 0.95 * expected.time_s, number, dice)
+        moments = _broken_run(given.mission, folder, 0.9 * expected.time_s, number, dice)
         found = _Figures.of(folder, unbroken)
         is_good = (
             found.outcome == expected.outcome
