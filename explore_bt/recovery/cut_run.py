@@ -12,6 +12,7 @@ from explore_bt.checkpoint import (
     Checkpoint,
     CheckpointError,
     CheckpointStore,
+    Codec,
     CodecError,
     Recent,
     RobotMemory,
@@ -42,6 +43,7 @@ from explore_bt.version import __version__
 __all__ = ["BrokenOff", "find_broken_off"]
 
 _NOT_BEFORE = 1e-6
+_AHEAD_S = 1.5
 _NOTHING_LEARNT = {"first": None, "last": None}
 
 
@@ -77,13 +79,16 @@ def find_broken_off(folder: Path, settings: Sequence[str] = ()) -> BrokenOff:
     _check_open(folder, memory, settings)
     mission, registry, changes = _mission(memory, settings)
     recording, lost = _recording(folder, memory)
-    recent = read_recent(checkpoint.folder.parent)
-    if recent is not None and recent.tick < memory.tick:
-        recent = None
-    robots = {robot.name: _robot_memory(checkpoint, mission, robot.name, recent) for robot in mission.robots}
     tick = memory.tick
     if recording is not None:
         tick = max(tick, math.ceil(recording.duration_s * mission.tree_rate_hz - _NOT_BEFORE))
+    recent = read_recent(checkpoint.folder.parent)
+    ahead = (
+        _AHEAD_S * mission.tree_rate_hz
+    )  # of a recording that was lost it would know what the map does not
+    if recent is not None and not memory.tick <= recent.tick <= tick + ahead:
+        recent = None
+    robots = {robot.name: _robot_memory(checkpoint, mission, robot.name, recent) for robot in mission.robots}
     cuts = {
         name: _cut(checkpoint, name, robot, memory, recording, tick / mission.tree_rate_hz)
         for name, robot in robots.items()
@@ -168,7 +173,7 @@ def _mission(memory: RunMemory, settings: Sequence[str]) -> tuple[Mission, Regis
 
 def _is_still(file: Path, text: str) -> bool:
     try:
-        return file.read_text(encoding="utf-8-sig", errors="strict") == text
+        return file.read_bytes().decode("utf-8-sig") == text
     except (OSError, ValueError):
         return False
 
@@ -191,14 +196,23 @@ def _robot_memory(checkpoint: Checkpoint, mission: Mission, name: str, recent: R
     file, codec = robot_file(name), codec_for(leaves)
     try:
         memory = codec.loads(checkpoint.read(file))
-        newer = codec.loads(recent.robots[name]) if recent and name in recent.robots else memory
     except (CodecError, OSError) as fault:
         raise CheckpointError(f"{checkpoint.folder / file} cannot be read: {fault}") from None
-    if not isinstance(memory, RobotMemory) or not isinstance(newer, RobotMemory):
+    if not isinstance(memory, RobotMemory):
         raise CheckpointError(f"{checkpoint.folder / file} tells of no robot")
+    newer = _recent_memory(codec, recent, name) or memory
     return replace(
         memory, blackboard=newer.blackboard, nodes=newer.nodes, parts={**memory.parts, **newer.parts}
     )
+
+
+def _recent_memory(codec: Codec, recent: Recent | None, name: str) -> RobotMemory | None:
+    """None where nothing of use was written after the checkpoint."""
+    try:
+        found = codec.loads(recent.robots[name]) if recent and name in recent.robots else None
+    except CodecError:
+        return None
+    return found if isinstance(found, RobotMemory) else None
 
 
 def _cut(

@@ -46,7 +46,7 @@ class CheckpointKeeper:
     Args:
         store: where they go.
         robots: whose state is kept.
-        tell: takes events; one that says that nothing can be kept any more, for one.
+        tell: takes an event when a checkpoint could not be written.
     """
 
     def __init__(
@@ -63,13 +63,14 @@ class CheckpointKeeper:
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="checkpoint")
         self._writing: Future[Checkpoint] | None = None
         self._last: Checkpoint | None = None
-        self._due_s = self._note_due_s = 0.0
+        self._now_s = self._due_s = self._note_due_s = 0.0
         self._left_out: set[str] = set()
         self._seconds: list[float] = []
         """Wall time that each took of the tick thread, waiting for the one before aside."""
 
     def look(self, run: RunMemory, *, waits: bool = False) -> None:
         """A tick has ended: write a checkpoint if one is due; ``waits``: until it is on the disk."""
+        self._now_s = run.stamp_s
         if run.stamp_s < self._due_s or (self._is_busy and not self._waits):
             self._note(run)
             return
@@ -80,6 +81,7 @@ class CheckpointKeeper:
 
     def close(self, run: RunMemory) -> None:
         """The run is over: a last checkpoint, whole on the disk when this returns."""
+        self._now_s = run.stamp_s
         self._take(run)
         self._finish()
         self._writer.shutdown()
@@ -101,7 +103,7 @@ class CheckpointKeeper:
             texts = {robot.name: self._text(robot.name, _small(robot.memory())) for robot in self._robots}
             write_recent(self._store.folder, Recent(run.tick, texts))
         except Exception as fault:
-            self._complain(run.stamp_s, fault)
+            self._complain(fault)
 
     @property
     def _is_busy(self) -> bool:
@@ -120,7 +122,7 @@ class CheckpointKeeper:
                 for robot in self._robots
             ]
         except Exception as fault:  # a plugin that cannot save, a full disk: the mission goes on
-            self._complain(run.stamp_s, fault)
+            self._complain(fault)
             return
         self._writing = self._writer.submit(self._write, draft, run, memories, saves)
         self._seconds.append(time.perf_counter() - begun_s)
@@ -167,14 +169,14 @@ class CheckpointKeeper:
         try:
             self._last = writing.result()
         except Exception as fault:
-            self._complain(self._due_s, fault)
+            self._complain(fault)
 
-    def _complain(self, stamp_s: float, fault: Exception) -> None:
+    def _complain(self, fault: Exception) -> None:
         words = f"no checkpoint was written: {fault!r}"
         if words not in self._left_out:
             self._left_out.add(words)
             _log.error("%s", words, exc_info=fault)
-            self._tell(Event(stamp_s, "", "warning", "checkpoint", words))
+            self._tell(Event(self._now_s, "", "warning", "checkpoint", words))
 
 
 def _small(memory: RobotMemory) -> RobotMemory:

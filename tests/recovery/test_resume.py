@@ -108,8 +108,10 @@ def test_the_strategy_remembers_up_to_the_last_second(cut: Path) -> None:
 def test_without_its_recording_a_run_goes_on_from_the_checkpoint(cut: Path) -> None:
     (cut / "recording.mcap").unlink()
     broken = find_broken_off(cut)
-    assert broken.run.robots["robot"].resumption.stamp_s == pytest.approx(10.0)
+    robot = broken.run.robots["robot"]
+    assert robot.resumption.stamp_s == pytest.approx(10.0)
     assert any("is lost" in note for note in broken.notes)
+    assert len(robot.memory.blackboard["visited"]) == 1  # type: ignore[arg-type]  # as then, not as at the end
 
 
 def test_the_recording_of_another_run_is_not_used(cut: Path, mission: Path, tmp_path: Path) -> None:
@@ -139,6 +141,16 @@ def test_a_damaged_checkpoint_is_named_and_the_one_before_is_taken(cut: Path) ->
     broken = find_broken_off(cut)
     assert broken.run.memory.stamp_s == pytest.approx(5.0)
     assert [note for note in broken.notes if f"{newest} is not used: robot/slam/slam.npz is damaged" in note]
+
+
+@pytest.mark.parametrize("damage", ["", "half", "0" * 64 + "\n{}"])
+def test_damaged_notes_of_the_last_second_cost_only_that(cut: Path, damage: str) -> None:
+    file = cut / "checkpoint" / "recent.json"
+    text = file.read_text()
+    file.write_text(text[: len(text) // 2] if damage == "half" else damage)
+    robot = find_broken_off(cut).run.robots["robot"]
+    assert robot.resumption.stamp_s > KILLED_S - 1.1
+    assert len(robot.memory.blackboard["visited"]) == 1  # type: ignore[arg-type]  # of the checkpoint
 
 
 def test_without_a_whole_checkpoint_the_way_out_is_named(cut: Path) -> None:
