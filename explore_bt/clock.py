@@ -26,10 +26,14 @@ class Clock(ABC):
 
 
 class WallClock(Clock):
-    """Real time, counted from the clock's construction."""
+    """Real time, counted from the clock's construction.
 
-    def __init__(self) -> None:
-        self._origin_s = time.monotonic()
+    Args:
+        begin_s: what the clock shows then; above 0 where a run is resumed.
+    """
+
+    def __init__(self, begin_s: float = 0.0) -> None:
+        self._origin_s = time.monotonic() - begin_s
 
     @property
     def is_simulated(self) -> bool:
@@ -37,7 +41,7 @@ class WallClock(Clock):
         return False
 
     def now_s(self) -> float:
-        """Seconds since construction."""
+        """Seconds since construction, and ``begin_s``."""
         return time.monotonic() - self._origin_s
 
     def wait_until(self, time_s: float) -> None:
@@ -48,10 +52,14 @@ class WallClock(Clock):
 
 
 class ManualClock(Clock):
-    """A clock that jumps to the time waited for; simulators advance their world on top of it."""
+    """A clock that jumps to the time waited for; simulators advance their world on top of it.
 
-    def __init__(self) -> None:
-        self._now_s = 0.0
+    Args:
+        begin_s: what it shows first; above 0 where a run is resumed.
+    """
+
+    def __init__(self, begin_s: float = 0.0) -> None:
+        self._now_s = begin_s
 
     @property
     def is_simulated(self) -> bool:

@@ -6,13 +6,24 @@ import os
 import tempfile
 from pathlib import Path
 
-__all__ = ["missions_folder", "write_whole"]
+__all__ = ["missions_folder", "sync_files", "write_whole"]
 
 
 def missions_folder() -> Path:
     """Where the missions that ship are: in the package of a wheel, beside it in a checkout."""
     package = Path(__file__).parent
     return package / "missions" if (package / "missions").is_dir() else package.parent / "missions"
+
+
+def sync_files(folder: Path) -> None:
+    """Have all that was written to the files right in a folder on the disk, so that a power cut spares it."""
+    for path in folder.iterdir():
+        if path.is_file():
+            handle = os.open(path, os.O_RDONLY)
+            try:
+                os.fsync(handle)
+            finally:
+                os.close(handle)
 
 
 def write_whole(path: Path, data: bytes | str) -> Path:

@@ -30,6 +30,7 @@ class GiveUpGoal(Leaf):
     """Remembers the present goal as one that is not worth another try."""
 
     type_key = "give_up_goal"
+    values = (GivenUp,)
 
     goal: Input[Waypoint] = Input(Waypoint, default=Key("goal"), doc="the goal that failed")
     failure: Input[str] = Input(str, default=Key("failure"), doc="code of the reason")

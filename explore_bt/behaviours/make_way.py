@@ -39,6 +39,8 @@ class MakeWay(Leaf):
     chances: Input[int] = Input(int, default=5, ge=1, doc="how often for the same goal in a row")
     patience: Input[float] = Input(Duration, default=10.0, ge=0.0, doc="how long to wait at most")
 
+    keeps = ("_given",)
+
     _given: tuple[tuple[float, float], int] = ((math.nan, math.nan), 0)
 
     def initialise(self) -> None:

@@ -18,6 +18,7 @@ class RecordWaypoint(Leaf):
     """
 
     type_key = "record_waypoint"
+    values = (HalfPlane, HalfPlaneHistory)
 
     place: Input[str] = Input(
         Literal["goal", "here"], default="goal", doc="the goal that was driven to, or where the robot stands"

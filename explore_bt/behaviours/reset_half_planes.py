@@ -12,6 +12,7 @@ class ResetHalfPlanes(Leaf):
     """Empties the half-plane history: from now on no half-plane constrains, until the next waypoint."""
 
     type_key = "reset_half_planes"
+    values = (HalfPlaneHistory,)
 
     history: Output[HalfPlaneHistory] = Output(
         HalfPlaneHistory, default=Key("half_planes"), doc="the history to empty"

@@ -22,6 +22,8 @@ HERE_M = 0.15
 class Search(Leaf):
     """Base of leaves that put a place into ``goal``, or fail and say what stays open and why."""
 
+    values = (GivenUp,)
+
     min_gain: Input[float] = Input(
         Area, default=0.1, ge=0.01, doc="less new area is not worth a drive, nor named"
     )

@@ -22,6 +22,7 @@ class TakeBack(Leaf):
     """
 
     type_key = "take_back"
+    values = (GivenUp,)
 
     chances: Input[int] = Input(int, default=1, ge=1, doc="how often the same place gets another chance")
     at_least: Input[float] = Input(

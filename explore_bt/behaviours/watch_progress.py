@@ -20,6 +20,8 @@ class WatchProgress(Leaf):
     decisions: Input[int] = Input(int, default=12, ge=2, doc="how many decisions may bring nothing")
     min_area: Input[float] = Input(Area, default=0.5, ge=0.0, doc="new floor that counts as progress")
 
+    keeps = ("_history_m2",)
+
     _history_m2: tuple[float, ...] = ()
 
     def update(self) -> Status:

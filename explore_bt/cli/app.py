@@ -7,12 +7,15 @@ from typing import Annotated
 import typer
 
 from explore_bt.cli.check import check
+from explore_bt.cli.compare import compare
 from explore_bt.cli.convert import convert
 from explore_bt.cli.debug import debug
 from explore_bt.cli.export import export
 from explore_bt.cli.new_plugin import new_plugin
 from explore_bt.cli.plugins import plugins
+from explore_bt.cli.recover import recover
 from explore_bt.cli.replay import replay
+from explore_bt.cli.resume import resume
 from explore_bt.cli.run import run
 from explore_bt.cli.schema import schema
 from explore_bt.cli.show import show
@@ -68,6 +71,9 @@ def start(
 app.command(epilog="Example: explore-bt run 01_apartment --set stride=1.2 --seed 3 --headless")(run)
 app.command(epilog="Example: explore-bt debug 01_apartment --terminal")(debug)
 app.command(epilog="Example: explore-bt replay runs/first --open")(replay)
+app.command(epilog="Example: explore-bt resume runs/apartment-20250101-120000")(resume)
+app.command(epilog="Example: explore-bt recover runs/apartment-20250101-120000")(recover)
+app.command(epilog="Example: explore-bt compare runs/a runs/b --out a-b.html")(compare)
 app.command(epilog="Example: explore-bt check missions/mine.yaml --set clearance='0.30 m'")(check)
 app.command(epilog="Example: explore-bt show 01_apartment --dot | dot -Tsvg -o tree.svg")(show)
 app.command(epilog="Example: explore-bt convert 01_apartment --xml --out apartment.xml")(convert)

@@ -16,11 +16,12 @@ if TYPE_CHECKING:
     from explore_bt.interfaces import Sink
     from explore_bt.mission import Mission
     from explore_bt.plugin import Registry
-    from explore_bt.runtime import Attendant, StopFlag
+    from explore_bt.runtime import Attendant, CutRun, StopFlag
     from explore_bt.types import Outcome, Result
 
 __all__ = [
     "GETTING_READY",
+    "HeadlessOption",
     "OutOption",
     "SeedOption",
     "SinkOption",
@@ -43,6 +44,7 @@ SinkOption = Annotated[
         "--sink", metavar="NAME", help="One more observer (foxglove, or rerun,to=file); may be repeated."
     ),
 ]
+HeadlessOption = Annotated[bool, typer.Option("--headless", help="No live view, a line every ten seconds.")]
 VerboseOption = Annotated[bool, typer.Option("-v", "--verbose", help="Show the log.")]
 
 GETTING_READY = "getting ready (the first time takes longer, it compiles)"
@@ -56,8 +58,9 @@ def drive(
     sinks: Sequence[Sink],
     stop: StopFlag,
     attendant: Attendant | None = None,
+    resumed: CutRun | None = None,
 ) -> Result:
-    """Run the mission to its end.
+    """Run the mission from its start, or from where it broke off, to its end.
 
     Raises:
         UserError: it asks for something that cannot be had.
@@ -74,6 +77,7 @@ def drive(
             sinks=sinks,
             stop=stop,
             attendant=attendant,
+            resumed=resumed,
         )
     except UserError:
         raise

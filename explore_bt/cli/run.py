@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-from typing import Annotated
 
 import typer
 
 from explore_bt.cli.driving import (
     GETTING_READY,
+    HeadlessOption,
     OutOption,
     SeedOption,
     SinkOption,
@@ -34,9 +34,7 @@ def run(
     set_: SetOption = None,
     seed: SeedOption = 0,
     out: OutOption = None,
-    headless: Annotated[
-        bool, typer.Option("--headless", help="No live view, a line every ten seconds.")
-    ] = False,
+    headless: HeadlessOption = False,
     sink: SinkOption = None,
     groot: GrootOption = False,
     groot_port: GrootPortOption = 1667,
@@ -47,7 +45,7 @@ def run(
     """Run a mission; map, recording and report land in a folder.
 
     Exit code: 0 explored, 1 failed or budget spent, 2 wrong input, 130 stopped by hand.
-    Ctrl-C stops the robot safely and saves the results.
+    Ctrl-C stops the robot safely and saves the results; explore-bt resume goes on from there.
     """
     checked, registry = load_checked(mission, set_, mock)
     folder = new_run_folder(out, checked.path.stem)

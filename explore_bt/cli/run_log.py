@@ -19,9 +19,9 @@ class _FileInFolder(logging.FileHandler):
 
 
 @contextmanager
-def run_log(file: Path, *, verbose: bool) -> Iterator[None]:
-    """While inside, what ``explore_bt`` logs goes to ``file`` (made with the first line)."""
-    handlers: list[logging.Handler] = [_FileInFolder(file, mode="w", delay=True)]
+def run_log(file: Path, *, verbose: bool, goes_on: bool = False) -> Iterator[None]:
+    """While inside, what ``explore_bt`` logs goes to ``file``; ``goes_on``: behind what is in it."""
+    handlers: list[logging.Handler] = [_FileInFolder(file, mode="a" if goes_on else "w", delay=True)]
     if verbose:
         handlers.append(logging.StreamHandler())
     logger = logging.getLogger("explore_bt")

@@ -6,7 +6,7 @@ from explore_bt.interfaces.exporter import Exporter, RobotProduct
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.interfaces.planner import Planner, never
 from explore_bt.interfaces.playback import Playback, Recorded
-from explore_bt.interfaces.plugin import API_VERSION, Plugin, PluginOptions, RobotContext
+from explore_bt.interfaces.plugin import API_VERSION, Plugin, PluginOptions, Resumption, RobotContext
 from explore_bt.interfaces.services import MapMemory, MapView, Pilot, RobotServices
 from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.slam import Slam
@@ -43,6 +43,7 @@ __all__ = [
     "PluginOptions",
     "PortInfo",
     "Recorded",
+    "Resumption",
     "RobotContext",
     "RobotProduct",
     "RobotServices",

@@ -26,6 +26,9 @@ class Driver(Plugin):
     def setup(self, context: RobotContext) -> None:
         """Open hardware or load the world; may take seconds.
 
+        Where ``context.resumed`` says so, the clock begins at that mission time (``WallClock(begin_s)``),
+        and a simulator has the body stand where it says; a driver that cannot do that is not resumed.
+
         Raises:
             WorldError: a world that cannot be used, or a start inside an obstacle.
             PluginError: options that do not fit this machine.

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict
 from explore_bt.interfaces.truth import GroundTruth
 from explore_bt.types import MotionLimits, Pose2
 
-__all__ = ["API_VERSION", "Plugin", "PluginOptions", "RobotContext"]
+__all__ = ["API_VERSION", "Plugin", "PluginOptions", "Resumption", "RobotContext"]
 
 API_VERSION = 1
 """Version of the contracts in this package; a plugin states the one it was written for."""
@@ -48,6 +48,21 @@ class Plugin(ABC):
 
 
 @dataclass(frozen=True, slots=True)
+class Resumption:
+    """A run goes on that another process began.
+
+    Attributes:
+        stamp_s: the mission time at which it goes on; clocks show it at set-up, stamps count from there.
+        pose: where the robot was last believed to be, ``map`` frame.
+        true_pose: where the simulator last had it; None on hardware. It stands there now.
+    """
+
+    stamp_s: float
+    pose: Pose2
+    true_pose: Pose2 | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class RobotContext:
     """What a plugin learns about its robot when it is set up.
 
@@ -58,6 +73,7 @@ class RobotContext:
         footprint_radius_m: the robot's circular footprint.
         limits: the driver's limits, capped by the mission's.
         truth: the simulator's truth, None on hardware.
+        resumed: where the run goes on, None for one that begins. ``start`` is still where the mission began.
     """
 
     robot: str = "robot"
@@ -66,6 +82,7 @@ class RobotContext:
     footprint_radius_m: float = 0.25
     limits: MotionLimits = MotionLimits()
     truth: GroundTruth | None = None
+    resumed: Resumption | None = None
 
     def rng(self, stream: str) -> np.random.Generator:
         """An independent generator for one named use; the same seed, robot and name give the same."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from typing import ClassVar
 
 from explore_bt.interfaces.plugin import Plugin
 from explore_bt.interfaces.snapshot import Event, RunInfo, TickSnapshot
@@ -19,6 +20,8 @@ class Sink(Plugin):
     """
 
     kind = "sink"
+    wants_past: ClassVar[bool] = False
+    """Whether a resumed run shows it what was recorded before the cut, as far as that tells."""
 
     @abstractmethod
     def open(self, run: RunInfo) -> None:

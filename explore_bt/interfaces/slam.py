@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from explore_bt.interfaces.plugin import Plugin, RobotContext
@@ -77,6 +77,28 @@ class Slam(Plugin):
     @abstractmethod
     def save(self, folder: Path) -> None:
         """Write all that ``load`` needs to go on in this map."""
+
+    def begin_save(self, folder: Path, before: Path | None) -> Callable[[], None]:  # noqa: ARG002  # those that can
+        """Take hold of what ``save`` would write now, quickly, and return what writes it.
+
+        A checkpoint is written beside the control loop: what is returned is called once, by another
+        thread, while ``update`` goes on, and must read nothing that ``update`` changes. The default saves
+        at once, which holds the robot's loop up for as long as ``save`` takes.
+
+        Args:
+            folder: as for ``save``.
+            before: what this plugin wrote for the checkpoint before, if it is still there: files that
+                would be the same may be linked from it (``os.link``); None: write everything.
+        """
+        self.save(folder)
+        return lambda: None
+
+    def pick_up(self) -> None:
+        """A resumed run has given ``update`` all that was recorded; the robot stands still now.
+
+        It may stand half a metre from ``estimate()``, turned by as much as it had time for. The default
+        trusts ``update`` to find that out.
+        """
 
     @abstractmethod
     def load(self, folder: Path) -> None:

@@ -82,6 +82,7 @@ class RunInfo:
 
     Attributes:
         sources: file as ``NodeInfo.place`` names it -> its text.
+        resumed_s: mission time at which a run that broke off goes on; None for one that begins.
     """
 
     mission: str
@@ -93,6 +94,7 @@ class RunInfo:
     trees: Mapping[str, tuple[NodeInfo, ...]]
     footprint_radius_m: Mapping[str, float]
     sources: Mapping[str, str] = field(default_factory=dict)
+    resumed_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

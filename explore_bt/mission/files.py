@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -50,20 +51,27 @@ class MissionText:
     is_whole: bool = True
 
 
-def read_files(path: Path, faults: Faults, known: tuple[str, ...] = MISSION_KEYS) -> MissionText | None:
+def read_files(
+    path: Path,
+    faults: Faults,
+    known: tuple[str, ...] = MISSION_KEYS,
+    texts: Mapping[Path, str] | None = None,
+) -> MissionText | None:
     """The mission file and all it includes; None if it cannot be read as a mapping at all.
 
     Args:
         path: the file.
         faults: what is wrong with it is noted here.
         known: the keys it may hold; ``INCLUDE_KEYS`` for a file of trees.
+        texts: real path -> text, of files that are not read but known already.
     """
-    file = read_mapping(path, "the mission", _HINT, faults)
+    files = _Files(texts or {}, faults)
+    file = _mapping_of(files, path, "the mission", _HINT, faults)
     if file is None:
         return None
     source, root = file
     mission = MissionText(source, root)
-    _Collector(mission, path, faults).collect(root, known, (Path(os.path.realpath(path)),))
+    _Collector(mission, path, files, faults).collect(root, known, (Path(os.path.realpath(path)),))
     return mission
 
 
@@ -76,8 +84,14 @@ def read_mapping(path: Path, shown: str, hint: str, faults: Faults) -> tuple[Sou
         hint: what to do if it is something else.
         faults: what is wrong with it is noted here.
     """
+    return _mapping_of(_Files({}, faults), path, shown, hint, faults)
+
+
+def _mapping_of(
+    files: _Files, path: Path, shown: str, hint: str, faults: Faults
+) -> tuple[Source, Entries] | None:
     head = Source(str(path), "", path.parent, has_lines=False)
-    text = read_text(path, head.place(), shown, faults)
+    text = files.read(path, head.place(), shown)
     if text is None:
         return None
     source = Source(str(path), text, path.parent)
@@ -113,11 +127,25 @@ def read_text(path: Path, place: Place, shown: str, faults: Faults) -> str | Non
         return None
 
 
+class _Files:
+    """Texts of files: those that are known already, and those on the disk."""
+
+    def __init__(self, texts: Mapping[Path, str], faults: Faults) -> None:
+        self._texts = texts
+        self._faults = faults
+
+    def read(self, path: Path, place: Place, shown: str) -> str | None:
+        """The text; None where there is none, and a fault is noted."""
+        known = self._texts.get(Path(os.path.realpath(path))) if self._texts else None
+        return known if known is not None else read_text(path, place, shown, self._faults)
+
+
 class _Collector:
     """Walks the includes depth first and gathers parameters and trees."""
 
-    def __init__(self, mission: MissionText, path: Path, faults: Faults) -> None:
+    def __init__(self, mission: MissionText, path: Path, files: _Files, faults: Faults) -> None:
         self._mission = mission
+        self._files = files
         self._faults = faults
         self._folder = Path(os.path.realpath(path.parent))
         self._shown_folder = path.parent
@@ -180,7 +208,7 @@ class _Collector:
         if len(self._mission.included) >= _MOST_FILES:
             self._faults.add(value.place, f"more than {_MOST_FILES} included files")
             return False
-        text = read_text(real, value.place, value.data, self._faults)
+        text = self._files.read(real, value.place, value.data)
         if text is None:
             return False
         shown = os.path.join(os.path.dirname(value.place.source.name), value.data)

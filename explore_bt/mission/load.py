@@ -7,6 +7,7 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from explore_bt.mission.catalog import PluginCatalog
@@ -16,7 +17,7 @@ from explore_bt.mission.files import INCLUDE_KEYS, MissionText, read_files
 from explore_bt.mission.limits import read_limits, read_tick
 from explore_bt.mission.model import Mission, RobotSpec
 from explore_bt.mission.nodes import NodeSpec
-from explore_bt.mission.overrides import SECTIONS, Override, overridden, read_overrides
+from explore_bt.mission.overrides import SECTIONS, Override, as_settings, overridden, read_overrides
 from explore_bt.mission.param_section import read_params
 from explore_bt.mission.params import PLUGIN_KINDS, Param
 from explore_bt.mission.reading import expect_entries, expect_items, expect_text, is_null, written
@@ -38,6 +39,7 @@ def load_mission(
     overrides: Sequence[str] | Mapping[str, str] = (),
     cwd: Path | None = None,
     environ: Mapping[str, str] | None = None,
+    texts: Mapping[Path, str] | None = None,
 ) -> Mission:
     """Read, resolve and check a mission; no robot is needed and no plugin is set up.
 
@@ -47,17 +49,20 @@ def load_mission(
         overrides: ``name=value``: a parameter, or ``limits.x`` or ``tick.x``; the value is YAML.
         cwd: what relative files in overrides are relative to; the current directory by default.
         environ: what ``$env.X`` means; the process's environment by default.
+        texts: real path -> text, of files that are taken as they once were and not as they are now.
 
     Raises:
         MissionError: with every fault of every file and override.
     """
     faults = Faults()
-    given = read_overrides(overrides, cwd or Path.cwd(), faults)
-    mission = read_files(path, faults)
+    settings = as_settings(overrides)
+    given = read_overrides(settings, cwd or Path.cwd(), faults)
+    mission = read_files(path, faults, texts=texts)
     if mission is None:
         faults.raise_if_any()
     assert mission is not None  # read_files has noted why not, and that was raised
-    return _Loader(mission, catalog, given, os.environ if environ is None else environ, faults).load(path)
+    loaded = _Loader(mission, catalog, given, os.environ if environ is None else environ, faults).load(path)
+    return replace(loaded, settings=tuple(settings), settings_folder=Path(os.path.abspath(cwd or Path.cwd())))
 
 
 def load_tree(
@@ -133,6 +138,7 @@ class _Loader:
             included=tuple(self._text.included),
             declared=declared,
             sources={each.name: each.text for each in (self._text.source, *self._text.included.values())},
+            texts=_texts(path, self._text),
         )
 
     def _name(self, path: Path) -> str:
@@ -198,6 +204,11 @@ class _Loader:
         if root is not None and reader.complete:
             check_wiring(root, self._faults)
         return root
+
+
+def _texts(path: Path, text: MissionText) -> Mapping[Path, str]:
+    included = {real: source.text for real, source in text.included.items()}
+    return {Path(os.path.realpath(path)): text.source.text, **included}
 
 
 def _digest(text: MissionText, params: Mapping[str, object]) -> str:

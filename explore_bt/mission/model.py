@@ -64,6 +64,8 @@ class Mission:
         params: parameter -> value in SI; None where it is not given.
         declared: the parameters' declarations: type, bounds, doc.
         sources: file as its places name it -> its text, for the mission and what it includes.
+        texts: real path -> text, of the file and the included ones.
+        settings: the overrides, ``name=value``; relative files in them are relative to ``settings_folder``.
         control_rate_hz: a whole multiple of ``tree_rate_hz``.
     """
 
@@ -80,3 +82,6 @@ class Mission:
     included: tuple[Path, ...] = ()
     declared: tuple[Param, ...] = ()
     sources: Mapping[str, str] = field(default_factory=dict)
+    texts: Mapping[Path, str] = field(default_factory=dict)
+    settings: tuple[str, ...] = ()
+    settings_folder: Path = Path()

@@ -11,7 +11,7 @@ from explore_bt.mission.faults import Faults
 from explore_bt.mission.source import Source
 from explore_bt.mission.words import did_you_mean
 
-__all__ = ["SECTIONS", "Override", "overridden", "params_overridden", "read_overrides"]
+__all__ = ["SECTIONS", "Override", "as_settings", "overridden", "params_overridden", "read_overrides"]
 
 SECTIONS = ("limits", "tick")
 
@@ -24,13 +24,17 @@ class Override:
     entry: Entry
 
 
+def as_settings(texts: Sequence[str] | Mapping[str, str]) -> Sequence[str]:
+    """Each as ``name=value``."""
+    return [f"{name}={value}" for name, value in texts.items()] if isinstance(texts, Mapping) else texts
+
+
 def read_overrides(
     texts: Sequence[str] | Mapping[str, str], cwd: Path, faults: Faults
 ) -> tuple[Override, ...]:
     """The overrides, each as the entry it stands for; relative files in them are relative to ``cwd``."""
-    written = [f"{name}={value}" for name, value in texts.items()] if isinstance(texts, Mapping) else texts
     found: dict[tuple[str, str], Override] = {}
-    for text in written:
+    for text in as_settings(texts):
         override = _read(text, cwd, faults)
         if override is None:
             continue

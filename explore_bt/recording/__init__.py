@@ -1,8 +1,10 @@
 """The recording of a run: one MCAP file that outlives a crash and opens in Foxglove as it is."""
 
 from explore_bt.recording.btlog import STATUS_BYTES, btlog, transition_record
+from explore_bt.recording.chunk_writer import PERIOD_NS, ChunkWriter
 from explore_bt.recording.foxglove import decode_grid, log_message, stamp_ns
 from explore_bt.recording.mcap_sink import (
+    RECORDING,
     McapRecorder,
     McapRecorderOptions,
     periods_of,
@@ -22,11 +24,14 @@ from explore_bt.recording.tree_tally import NodeTally, TreeTally
 from explore_bt.recording.values import to_json
 
 __all__ = [
+    "PERIOD_NS",
+    "RECORDING",
     "ROBOT_TOPICS",
     "RUN_TOPICS",
     "SINKS",
     "STATUS_BYTES",
     "TOPICS",
+    "ChunkWriter",
     "LoggedMessage",
     "McapRecorder",
     "McapRecorderOptions",

@@ -3,20 +3,34 @@
 from __future__ import annotations
 
 import json
+import logging
 from dataclasses import asdict
+from pathlib import Path
 
 from pydantic import Field
 
 from explore_bt.interfaces import API_VERSION, Event, PluginOptions, RunInfo, Sink, TickSnapshot
 from explore_bt.recording.chunk_writer import ChunkWriter
 from explore_bt.recording.foxglove import log_message, stamp_ns
+from explore_bt.recording.reader import Recording, RecordingError, read_recording
 from explore_bt.recording.robot_track import Periods, RobotTrack
 from explore_bt.recording.topics import ROBOT_TOPICS, RUN_TOPICS
 from explore_bt.recording.values import to_json
 from explore_bt.types import Result
 from explore_bt.units import Duration
 
-__all__ = ["McapRecorder", "McapRecorderOptions", "periods_of", "result_message", "run_message"]
+__all__ = [
+    "RECORDING",
+    "McapRecorder",
+    "McapRecorderOptions",
+    "periods_of",
+    "result_message",
+    "run_message",
+]
+
+RECORDING = "recording.mcap"
+
+_log = logging.getLogger("explore_bt")
 
 
 class McapRecorderOptions(PluginOptions):
@@ -30,7 +44,11 @@ class McapRecorderOptions(PluginOptions):
 
 
 class McapRecorder(Sink):
-    """Writes ``recording.mcap`` into the run's folder; the same run gives the same bytes."""
+    """Writes ``recording.mcap`` into the run's folder; the same run gives the same bytes.
+
+    That of a resumed run is written anew from what was recorded before, and takes the place of the old file
+    once it holds all of that: at every moment there is one file with everything.
+    """
 
     name = "mcap"
     api_version = API_VERSION
@@ -47,7 +65,11 @@ class McapRecorder(Sink):
         """Create the file and write what is known from the start."""
         settings = self._settings
         periods = periods_of(settings)
-        writer = ChunkWriter(run.folder / "recording.mcap", run.version, stamp_ns(settings.chunk_period))
+        file = run.folder / RECORDING
+        past = _past(file) if run.resumed_s is not None else None
+        writer = ChunkWriter(
+            file.with_suffix(".part") if past else file, run.version, stamp_ns(settings.chunk_period)
+        )
         writer.register(
             [(topic.pattern, topic.schema) for topic in RUN_TOPICS]
             + [(topic.of(robot), topic.schema) for robot in run.trees for topic in ROBOT_TOPICS]
@@ -55,9 +77,16 @@ class McapRecorder(Sink):
         self._tracks = {
             robot: RobotTrack(robot, writer.write, periods, clouds=settings.clouds) for robot in run.trees
         }
-        self._writer = writer
-        writer.write("/run", 0, run_message(run))
+        self._writer, self._time_ns = writer, stamp_ns(run.resumed_s or 0.0)
+        if past is None:
+            writer.write("/run", 0, run_message(run))
+            writer.flush()
+            return
+        for topic, time_ns, data in past.raw_messages():
+            if topic != "/result":  # of a part that was stopped: the whole has one of its own
+                writer.write_raw(topic, time_ns, data)
         writer.flush()
+        writer.move(file)
 
     def on_tick(self, tick: TickSnapshot) -> None:
         """Write what the tick has changed."""
@@ -93,6 +122,15 @@ def periods_of(settings: McapRecorderOptions) -> Periods:
         scan=stamp_ns(settings.scan_period),
         map=stamp_ns(settings.map_period),
     )
+
+
+def _past(file: Path) -> Recording | None:
+    """What was recorded before the run was resumed; None if it cannot be read, which its owner is told."""
+    try:
+        return read_recording(file)
+    except RecordingError as fault:
+        _log.warning("the recording before the run was resumed is lost: %s", fault)
+        return None
 
 
 def run_message(run: RunInfo) -> str:

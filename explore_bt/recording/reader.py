@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 
 import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Channel, Chunk, Header, Message
+from mcap.records import Channel, Chunk, Header, Message, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from explore_bt.errors import LogError
@@ -53,16 +53,21 @@ class Recording:
     Attributes:
         path: the file.
         topics: all topics of the file, in the order they were declared.
+        schemas: topic -> name of its schema.
         info: the message on ``/run``.
         damage: empty for a whole file, else in words what is missing.
     """
 
-    def __init__(self, path: Path, chunks: list[Chunk], channels: dict[int, str], damage: str) -> None:
+    def __init__(self, path: Path, contents: _Contents) -> None:
         self.path = path
-        self.damage = damage
-        self._chunks = chunks
-        self._channels = channels
-        self.topics = tuple(channels.values())
+        self.damage = contents.damage
+        self._chunks = contents.chunks
+        self._channels = {number: channel.topic for number, channel in contents.channels.items()}
+        self.topics = tuple(self._channels.values())
+        self.schemas = {
+            channel.topic: contents.schemas.get(channel.schema_id, "")
+            for channel in contents.channels.values()
+        }
         self.info = next((message.value for message in self.messages("/run")), {})
 
     @property
@@ -91,28 +96,32 @@ class Recording:
             end_s: the last one.
         """
         wanted = {topic} if isinstance(topic, str) else topic
+        for name, time_ns, data in self._raw(start_s, end_s):
+            stamp_s = time_ns * 1e-9
+            if (wanted is None or name in wanted) and start_s <= stamp_s <= end_s:
+                yield RecordedMessage(name, stamp_s, json.loads(data))
+
+    def raw_messages(self) -> Iterator[tuple[str, int, bytes]]:
+        """Topic, mission time in nanoseconds and bytes of every message, in file order."""
+        return self._raw(0.0, float("inf"))
+
+    def _raw(self, start_s: float, end_s: float) -> Iterator[tuple[str, int, bytes]]:
+        """Of the chunks that reach into a span of time."""
         for chunk in self._chunks:
             if chunk.message_end_time * 1e-9 < start_s or chunk.message_start_time * 1e-9 > end_s:
                 continue
-            for name, record in self._records(chunk):
-                stamp_s = record.log_time * 1e-9
-                if (wanted is None or name in wanted) and start_s <= stamp_s <= end_s:
-                    yield RecordedMessage(name, stamp_s, json.loads(record.data))
+            for record in breakup_chunk(chunk):
+                if isinstance(record, Message) and record.channel_id in self._channels:
+                    # else declared in a chunk that was lost
+                    yield self._channels[record.channel_id], record.log_time, record.data
 
     def log(self, topics: Collection[str]) -> MessageLog:
         """The messages of these topics, to be found by time again and again."""
         log = MessageLog()
-        for chunk in self._chunks:
-            for name, record in self._records(chunk):
-                if name in topics:
-                    log.add(name, record.log_time, record.data.decode())
+        for name, time_ns, data in self.raw_messages():
+            if name in topics:
+                log.add(name, time_ns, data.decode())
         return log
-
-    def _records(self, chunk: Chunk) -> Iterator[tuple[str, Message]]:
-        """Messages with their topics, save those whose topic was declared in a chunk that was lost."""
-        for record in breakup_chunk(chunk):
-            if isinstance(record, Message) and record.channel_id in self._channels:
-                yield self._channels[record.channel_id], record
 
 
 def read_recording(path: Path) -> Recording:
@@ -139,7 +148,7 @@ def read_recording(path: Path) -> Recording:
             f"{path}: cut off after byte {contents.sound_bytes}, before its first second was written; "
             "nothing can be recovered"
         )
-    return Recording(path, contents.chunks, contents.channels, contents.damage)
+    return Recording(path, contents)
 
 
 @dataclass(slots=True)
@@ -147,7 +156,8 @@ class _Contents:
     """The sound chunks of a file, its channels, and what is wrong with it."""
 
     chunks: list[Chunk] = field(default_factory=list)
-    channels: dict[int, str] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+    schemas: dict[int, str] = field(default_factory=dict)
     unsound: list[int] = field(default_factory=list)
     sound_bytes: int = 0
     whole: bool = False
@@ -159,7 +169,8 @@ class _Contents:
             self.unsound.append(self.sound_bytes)
             return
         self.chunks.append(chunk)
-        self.channels |= {record.id: record.topic for record in records if isinstance(record, Channel)}
+        self.channels |= {record.id: record for record in records if isinstance(record, Channel)}
+        self.schemas |= {record.id: record.name for record in records if isinstance(record, Schema)}
 
     @property
     def damage(self) -> str:
@@ -187,7 +198,9 @@ def _read_contents(path: Path, file: BinaryIO, size: int) -> _Contents:
             if isinstance(record, Chunk):
                 contents.take(record)
             elif isinstance(record, Channel):  # repeated behind the last chunk
-                contents.channels.setdefault(record.id, record.topic)
+                contents.channels.setdefault(record.id, record)
+            elif isinstance(record, Schema):
+                contents.schemas.setdefault(record.id, record.name)
             contents.sound_bytes = file.tell()
         contents.whole = True
     except _BROKEN:

@@ -217,13 +217,13 @@ class RobotTrack:
             self._pose = pose
             self._pose_due.passed(time_ns)
             self._write(self._topic + "pose", time_ns, pose_message(time_ns, pose))
+            if robot.true_pose is not None:
+                self._write(self._topic + "truth", time_ns, pose_message(time_ns, robot.true_pose))
         health = (robot.estimate.health, robot.estimate.reason)
         if health != self._health or self._state_due.ready(time_ns):
             self._health = health
             self._state_due.passed(time_ns)
             self._write(self._topic + "state", time_ns, _state(time_ns, robot))
-            if robot.true_pose is not None:
-                self._write(self._topic + "truth", time_ns, pose_message(time_ns, robot.true_pose))
 
     def _sensing(self, time_ns: int, robot: RobotSnapshot) -> None:
         if robot.scan is not None and robot.scan is not self._scan and self._scan_due.ready(time_ns):

@@ -9,7 +9,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["schema_text"]
+__all__ = ["is_known", "schema_text"]
 
 _Schema = Mapping[str, Any]
 
@@ -180,6 +180,11 @@ _SCHEMAS: Mapping[str, _Schema] = {
     ),
     "explore_bt.Result": _ANY,
 }
+
+
+def is_known(name: str) -> bool:
+    """Whether there is a schema of that name."""
+    return name in _SCHEMAS
 
 
 def schema_text(name: str) -> bytes:

@@ -33,7 +33,7 @@ ROBOT_TOPICS = (
     Topic("/<robot>/nodes", "explore_bt.NodeTallies", "every 10 s, and at the end"),
     Topic("/<robot>/blackboard", "explore_bt.Blackboard", "on change, key frame every 5 s"),
     Topic("/<robot>/pose", "foxglove.PoseInFrame", "every tick while it moves, else 1 Hz"),
-    Topic("/<robot>/truth", "foxglove.PoseInFrame", "2 Hz, where the driver knows it"),
+    Topic("/<robot>/truth", "foxglove.PoseInFrame", "with every pose, where the driver knows it"),
     Topic("/<robot>/state", "explore_bt.State", "2 Hz, and on change of health"),
     Topic("/<robot>/scan", "foxglove.LaserScan", "at most 2 Hz"),
     Topic("/<robot>/measured", "explore_bt.Measurements", "all that SLAM was given, once a second"),

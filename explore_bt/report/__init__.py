@@ -3,8 +3,11 @@
 from explore_bt.report.cloud_exporter import PcdExporter, PlyExporter
 from explore_bt.report.g2o_exporter import G2oExporter
 from explore_bt.report.live import ProgressLines, TerminalView
+from explore_bt.report.map_picture import data_uri
 from explore_bt.report.map_server_exporter import MapServerExporter
 from explore_bt.report.octomap_exporter import OctomapExporter
+from explore_bt.report.overlay import cropped, overlaid
+from explore_bt.report.palette import robot_colour
 from explore_bt.report.report_sink import ReportSink
 from explore_bt.report.tum_exporter import TumExporter
 
@@ -20,6 +23,10 @@ __all__ = [
     "ReportSink",
     "TerminalView",
     "TumExporter",
+    "cropped",
+    "data_uri",
+    "overlaid",
+    "robot_colour",
 ]
 
 SINKS = (ReportSink, TerminalView, ProgressLines)

@@ -16,6 +16,7 @@ class ReportSink(Sink):
     """Writes ``map_view.png`` and ``report.html`` into the run's folder."""
 
     name = "report"
+    wants_past = True
     api_version = API_VERSION
 
     def __init__(self, options: PluginOptions) -> None:

@@ -14,6 +14,7 @@ _OUTCOMES = {
     Outcome.STOPPED: "Stopped by hand",
     Outcome.BUDGET: "Budget used up",
     Outcome.FAILED: "Failed",
+    Outcome.CUT: "Cut off",
 }
 NOBODY_KNOWS = "–"
 

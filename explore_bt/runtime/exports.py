@@ -16,14 +16,23 @@ _SAVED_MAP = "slam"
 """Folder of the results with the state of SLAM; a robot with ``map:`` goes on in it."""
 
 
-def export(registry: Registry, product: RobotProduct, slam: Slam, folder: Path) -> None:
-    """Let every exporter write and SLAM save; one that fails is named in the log and costs only its files."""
+def export(registry: Registry, product: RobotProduct, slam: Slam | None, folder: Path) -> None:
+    """Let every exporter write and SLAM save; one that fails is named in the log and costs only its files.
+
+    Args:
+        registry: where the exporters come from.
+        product: what they write.
+        slam: its state is saved; None where nobody knows it any more.
+        folder: where to.
+    """
     for name in registry.names("exporter"):
         make: type[Exporter] = registry.get("exporter", name)
         try:
             make(make.Options()).export(product, folder)
         except Exception:  # one format that cannot be written must not cost the others
             _log.exception("exporter %s wrote nothing", name)
+    if slam is None:
+        return
     try:
         slam.save(folder / _SAVED_MAP)
     except Exception:  # nor may a state that cannot be saved

@@ -5,26 +5,33 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+from explore_bt.checkpoint import CheckpointStore
 from explore_bt.errors import UserError
 from explore_bt.files import write_whole
-from explore_bt.interfaces import RobotProduct, RunInfo, Sink
+from explore_bt.interfaces import Event, RobotProduct, RunInfo, Sink
 from explore_bt.mission import Mission
 from explore_bt.plugin import Registry
 from explore_bt.runtime.attendant import Attendant
 from explore_bt.runtime.exports import export
 from explore_bt.runtime.observers import Observers
-from explore_bt.runtime.robot import Robot
+from explore_bt.runtime.resumption import CutRun
+from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
+from explore_bt.runtime.run_checkpoints import CHECKPOINTS, RunCheckpoints
 from explore_bt.runtime.runner import Runner
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.types import Result
 from explore_bt.version import __version__
 
-__all__ = ["run_mission"]
+__all__ = ["ENDING_KEYS", "run_mission"]
 
+RESULT = "result.json"
 LEFT_OPEN_KEY = "left_open"
 """Blackboard entry in which a tree lists what it could not explore, one sentence each."""
+ENDING_KEYS = (REASON_KEY, OVER_BUDGET_KEY, LEFT_OPEN_KEY)
+"""Entries in which a tree says how it ended: a run that is resumed after its end has not."""
 
 
 def run_mission(
@@ -36,6 +43,7 @@ def run_mission(
     sinks: Sequence[Sink],
     stop: StopFlag,
     attendant: Attendant | None = None,
+    resumed: CutRun | None = None,
 ) -> Result:
     """Run a mission to its end and leave its results in ``out``.
 
@@ -47,6 +55,7 @@ def run_mission(
         sinks: observers, in the order they are called.
         stop: raised by anyone who wants the robots to stop.
         attendant: stands beside the tick loop, a debugger for example.
+        resumed: where the run in ``out`` broke off; None begins one.
 
     Returns:
         What ``result.json`` says.
@@ -54,30 +63,73 @@ def run_mission(
     Raises:
         UserError: the mission asks for something that cannot be had; nothing was written.
     """
-    began_s = time.perf_counter()  # wall time is a figure of the report, never an input of the run
+    # wall time is a figure of the report, never an input of the run
+    began_s = time.perf_counter() - (resumed.memory.wall_time_s if resumed else 0.0)
     observers = Observers(sinks)
     attendant = attendant or Attendant()
     robots = [Robot(spec, mission, seed, stop, observers.event) for spec in mission.robots]
     try:
         for robot in robots:
-            robot.setup()
+            robot.setup(resumed.robots[robot.name] if resumed else None)
         _make_folder(out)
-        observers.open(_run_info(mission, robots, seed, out))
-        runner = Runner(mission, robots, observers, stop, attendant)
-        try:
-            runner.run()
-        finally:  # nothing mapped is lost, even if the run breaks down inside
-            result = _result(mission, robots, runner, seed, time.perf_counter() - began_s)
-            _export(registry, robots, result, out)
-            observers.close(result)
-            write_whole(out / "result.json", json.dumps(result.as_dict(), indent=2) + "\n")
-        return result
+        with CheckpointStore(out / CHECKPOINTS).locked():
+            return _run(
+                mission, robots, observers, stop, registry, _Run(out, seed, began_s, resumed, attendant)
+            )
     finally:
         try:
             for robot in robots:
                 robot.close()
         finally:
             attendant.end()
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """Where the results go, and since when; ``began_s`` is a reading of ``time.perf_counter``."""
+
+    out: Path
+    seed: int
+    began_s: float
+    resumed: CutRun | None
+    attendant: Attendant
+
+    @property
+    def wall_time_s(self) -> float:
+        return time.perf_counter() - self.began_s
+
+
+def _run(
+    mission: Mission,
+    robots: Sequence[Robot],
+    observers: Observers,
+    stop: StopFlag,
+    registry: Registry,
+    run: _Run,
+) -> Result:
+    """From the first tick to the files."""
+    out, resumed = run.out, run.resumed
+    info = _run_info(mission, robots, run)
+    observers.open(info)
+    if resumed is not None:
+        (out / RESULT).unlink(missing_ok=True)  # of the part before: it does not tell of this one
+        observers.past(resumed.past(info))
+        observers.event(_going_on(resumed, info))
+    checkpoints = RunCheckpoints(mission, robots, run.seed, out, observers.event, run.began_s, resumed)
+    runner = Runner(
+        mission, robots, observers, stop, run.attendant, resumed=resumed, after_tick=checkpoints.after_tick
+    )
+    try:
+        checkpoints.begin(runner)
+        runner.run()
+    finally:  # nothing mapped is lost, even if the run breaks down inside
+        result = _result(mission, robots, runner, run.seed, run.wall_time_s)
+        checkpoints.close(runner)
+        _export(registry, robots, result, out)
+        observers.close(result)
+        write_whole(out / RESULT, json.dumps(result.as_dict(), indent=2) + "\n")
+    checkpoints.clear(result.outcome)
+    return result
 
 
 def _make_folder(out: Path) -> None:
@@ -87,18 +139,26 @@ def _make_folder(out: Path) -> None:
         raise UserError(f"{out} cannot be made: {error.strerror}; name another folder with --out") from None
 
 
-def _run_info(mission: Mission, robots: Sequence[Robot], seed: int, out: Path) -> RunInfo:
+def _run_info(mission: Mission, robots: Sequence[Robot], run: _Run) -> RunInfo:
     return RunInfo(
         mission=mission.name,
         mission_text=mission.text,
         mission_sha256=mission.sha256,
-        seed=seed,
+        seed=run.seed,
         version=__version__,
-        folder=out,
+        folder=run.out,
         trees={robot.name: robot.tree.infos for robot in robots},
         footprint_radius_m={robot.name: robot.footprint_radius_m for robot in robots},
         sources=mission.sources,
+        resumed_s=None if run.resumed is None else run.resumed.stamp_s,
     )
+
+
+def _going_on(resumed: CutRun, info: RunInfo) -> Event:
+    """What the record says about the seam."""
+    memory, stamp_s = resumed.memory, info.resumed_s or 0.0
+    words = f"part {memory.parts + 1} begins, from the checkpoint at {memory.stamp_s:.1f} s"
+    return Event(stamp_s, "", "info", "mission", words)
 
 
 def _result(

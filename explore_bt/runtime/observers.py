@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 from explore_bt.interfaces import Event, RunInfo, Sink, TickSnapshot
@@ -32,6 +32,15 @@ class Observers:
         """A tick has ended."""
         for sink in list(self._failures):
             self._call(sink, partial(sink.on_tick, tick))
+
+    def past(self, moments: Iterable[TickSnapshot | Event]) -> None:
+        """What was recorded before the run was resumed, for those that want it."""
+        if not any(sink.wants_past for sink in self._failures):
+            return
+        for moment in moments:
+            for sink in [each for each in self._failures if each.wants_past]:
+                call = sink.on_tick if isinstance(moment, TickSnapshot) else sink.on_event
+                self._call(sink, partial(call, moment))  # type: ignore[arg-type]  # the two go together
 
     def event(self, event: Event) -> None:
         """Something happened."""

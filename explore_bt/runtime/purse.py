@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import cast
+
 from explore_bt.mission import LimitsSpec
 from explore_bt.types import Battery, Budget
 
@@ -41,6 +44,14 @@ class Purse:
             whole, left = (100.0 * (at.charge - limits.battery_reserve) for at in (self._first, self._last))
             found.append(Budget("battery", "%", whole, left, per_s=self._drain_per_s(whole - left)))
         return tuple(found)
+
+    def memory(self) -> Mapping[str, object]:
+        """What the battery gave so far."""
+        return {"first": self._first, "last": self._last}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Go on learning, from the next reading on."""
+        self._first, self._last = (cast(Battery | None, memory[name]) for name in ("first", "last"))
 
     def _drain_per_s(self, spent: float) -> float:
         assert self._first is not None

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
 from explore_bt.exploration import warm_up
 from explore_bt.interfaces import (
@@ -20,13 +21,14 @@ from explore_bt.interfaces import (
 )
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
+from explore_bt.runtime.fault_log import FaultLog
 from explore_bt.runtime.gate_news import GateNews
 from explore_bt.runtime.health_news import HealthNews
-from explore_bt.runtime.legs import plan_through
-from explore_bt.runtime.map_news import MapNews
 from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
+from explore_bt.runtime.resumption import Cut, check_clock
+from explore_bt.runtime.robot_keeping import Remembering, RobotKeeping
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
 from explore_bt.runtime.sketch import Sketch
@@ -36,6 +38,7 @@ from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.runtime.tree_news import TreeNews
+from explore_bt.runtime.way_finder import WayFinder
 from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
     Battery,
@@ -88,11 +91,11 @@ class Robot:
         self._measured: list[Measurement] = []
         self._view: MapView | None = None
         self._map_memory = MapMemory()
-        self._map_news = MapNews(self.slam, self._planner)
+        self._way_finder = WayFinder(self._planner, self.slam, stop)
         self._tight = TightPlaces()
         self._purse = Purse(mission.limits)
         self._slam_fault = ""
-        self._logged: set[tuple[str, str]] = set()
+        self._faults = FaultLog(self.name, self.tell)
         self._health_news = HealthNews()
         self._held_s = 0.0
         self._gate_news = GateNews()
@@ -100,14 +103,16 @@ class Robot:
         self._people = People()
         self.moving: tuple[MovingObstacle, ...] = ()
 
-    def setup(self) -> None:
-        """Open the driver, warm everything up.
+    def setup(self, cut: Cut | None = None) -> None:
+        """Open the driver, warm everything up; ``cut`` is where a resumed run broke off.
 
         Raises:
             UserError: whatever the mission asked for cannot be had.
         """
-        context = RobotContext(robot=self.name, seed=self._seed, start=self._spec.start)
+        resumed = cut.resumption if cut else None
+        context = RobotContext(robot=self.name, seed=self._seed, start=self._spec.start, resumed=resumed)
         self.driver.setup(context)
+        check_clock(self.driver, resumed)
         limits = self._mission.limits.apply(self.driver.limits)
         context = replace(
             context,
@@ -116,17 +121,26 @@ class Robot:
             limits=limits,
             truth=self.driver.truth(),
         )
-        self.home = self.driver.start
+        self.home = cut.memory.home if cut else self.driver.start
         warm_up()
-        self.slam.setup(context)
-        if self._spec.saved_map is not None:
-            self.slam.load(self._spec.saved_map)
-        self._poses_before = len(self.slam.trajectory().stamps_s)
+        self.slam.setup(replace(context, start=cut.memory.pose) if cut else context)
+        saved_map = cut.slam_folder if cut else self._spec.saved_map
+        if saved_map is not None:
+            self.slam.load(saved_map)
+        self._poses_before = cut.memory.poses_before if cut else len(self.slam.trajectory().stamps_s)
         self._planner.setup(context)
         self._controller.setup(context)
         gate = SafetyGate(self.driver.footprint_radius_m, limits)
         self.pilot = Pilot(self._controller, gate, self.driver)
         self.scores = Scorekeeper(self.home, context.truth)
+        parts: dict[str, Remembering] = {
+            "scores": self.scores,
+            "purse": self._purse,
+            "tight places": self._tight,
+        }
+        self._keeping = RobotKeeping(self.tree, self.blackboard, parts)
+        if cut is not None:
+            self._restore(cut)
 
     # --- what leaves may ask for -------------------------------------------------------------------
 
@@ -195,27 +209,20 @@ class Robot:
         """
         straight_m = self.estimate().T_map_base.distance_to(goal)
         try:
+            here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
+            grid = self.view().grid
             path = plan_or_squeeze(
-                lambda radius_m: self._plan(goal, via, radius_m), self.footprint_radius_m, straight_m
+                lambda radius_m: self._way_finder.path(grid, here, goal, via, radius_m),
+                self.footprint_radius_m,
+                straight_m,
             )
-            return centred(path, self._seen_points(), self.view().grid, self.footprint_radius_m)
+            return centred(path, self._seen_points(), grid, self.footprint_radius_m)
         except (PlanningFailure, UserError):
             raise
         except Exception as error:
             failure = ComponentFailure(f"planner {self._planner.name}", repr(error))
-            self._note_failure(failure.component, error)
+            self._faults.note(failure.component, error)
             raise failure from error
-
-    def _plan(self, goal: Pose2, via: Sequence[tuple[float, float]], radius_m: float) -> Path:
-        here = self.pilot.predict(self.estimate(), self._clock_s()).T_map_base
-        grid = self.view().grid
-        self._map_news.tell(grid)
-        return plan_through(
-            lambda start, end: self._planner.plan(grid, start, end, radius_m, lambda: self._stop.is_raised),
-            here,
-            via,
-            goal,
-        )
 
     def draw(self, drawing: Drawing) -> None:
         """Show observers what a leaf looked at."""
@@ -251,7 +258,7 @@ class Robot:
         try:
             self.pilot.step(self.estimate(), self._scan, now_s, dt_s)
         except Exception as error:  # any plugin's failure ends in a controlled stop, never in a crash
-            self._note_failure(f"controller {self._controller.name}", error)
+            self._faults.note(f"controller {self._controller.name}", error)
             self.pilot.brake(f"controller {self._controller.name} failed: {error!r}", now_s, dt_s)
         self._watch_gate()
         self._keep_score(now_s, dt_s)
@@ -285,13 +292,30 @@ class Robot:
         return self.tree.root.status
 
     def rest(self) -> None:
-        """Cut the tree off and come to rest."""
+        """Cut the tree off and come to rest; a resumed run goes on where it stood."""
+        self._keeping.rest()
         halt(self.tree.root)
         self.pilot.hold()
 
     def close(self) -> None:
         """Stop the body and let go of it."""
         self.driver.close()
+
+    # --- for checkpoints ----------------------------------------------------------------------------
+
+    def memory(self) -> RobotMemory:
+        """See ``RobotKeeping.memory``."""
+        pose = self.slam.estimate().T_map_base
+        return self._keeping.memory(self.home, pose, self.scores.true_pose, self._poses_before)
+
+    def _restore(self, cut: Cut) -> None:
+        self._keeping.restore(cut.memory)
+        for measurement in cut.measured:
+            self._take(measurement)
+        self._measured, self._scan = [], None
+        self.slam.pick_up()
+        if cut.score is not None:
+            self.scores.catch_up(cut.score, cut.true_way)
 
     # --- for observers ------------------------------------------------------------------------------
 
@@ -343,19 +367,12 @@ class Robot:
         if self._slam_fault:
             return
         self._measured.append(measurement)
+        self._keeping.hear(measurement)
         try:
             self.slam.update(measurement)
         except Exception as error:  # a SLAM that raises is lost: the gate brakes, the reason is recorded
             self._slam_fault = f"slam {self.slam.name} failed: {error!r}"
-            self._note_failure(f"slam {self.slam.name}", error)
-
-    def _note_failure(self, component: str, error: Exception) -> None:
-        """Tell the observers; the log gets the traceback too, once for every fault."""
-        fault = (component, repr(error))
-        self.tell("error", *fault)
-        if fault not in self._logged:
-            self._logged.add(fault)
-            _log.error("robot %s: %s failed", self.name, component, exc_info=error)
+            self._faults.note(f"slam {self.slam.name}", error)
 
     def _show_gate(self) -> None:
         assert self._scan is not None
@@ -386,7 +403,7 @@ class Robot:
         try:
             return self.driver.read()
         except Exception as error:  # silence is handled: a stale scan brakes the robot
-            self._note_failure(f"driver {self.driver.name}", error)
+            self._faults.note(f"driver {self.driver.name}", error)
             return ()
 
     def _watch_health(self) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from explore_bt.interfaces import Event, TickSnapshot
 from explore_bt.mission import Mission
 from explore_bt.runtime.attendant import Attendant
 from explore_bt.runtime.observers import Observers
+from explore_bt.runtime.resumption import CutRun
 from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tree_news import leaves_that_ended
@@ -34,6 +35,15 @@ class _Phase(enum.Enum):
 class Runner:
     """Drives all robots of a mission in lock-step until the trees, the user or a budget end it.
 
+    Args:
+        mission: as loaded and checked.
+        robots: set up.
+        observers: who is shown every tick.
+        stop: raised by anyone who wants an end.
+        attendant: stands beside the tick loop.
+        resumed: where the run goes on, None for one that begins.
+        after_tick: called when a tick has ended, and everybody has been shown it.
+
     Attributes:
         now_s: mission time, on the robots' clocks.
         tick: index of the coming ``TickSnapshot``.
@@ -46,6 +56,9 @@ class Runner:
         observers: Observers,
         stop: StopFlag,
         attendant: Attendant,
+        *,
+        resumed: CutRun | None = None,
+        after_tick: Callable[[Runner], None] = lambda _: None,
     ) -> None:
         self._mission = mission
         self.robots = robots
@@ -55,14 +68,24 @@ class Runner:
         self._dt_s = 1.0 / mission.control_rate_hz
         self._steps_per_tick = round(mission.control_rate_hz / mission.tree_rate_hz)
         self._phase = _Phase.WAKING
-        self._ended: dict[str, Status] = {}
+        self._after_tick = after_tick
+        self.ended: dict[str, Status] = {}
         self._rest_until_s = 0.0
-        self._step = 0
         self._held_s = 0.0
         self.tick = 0
-        self.now_s = 0.0
+        if resumed is not None:
+            self.tick = resumed.tick
+            ended = resumed.memory.ended if not resumed.memory.outcome else {}
+            self.ended = {name: Status(status) for name, status in ended.items()}
+        self._step = self.tick * self._steps_per_tick
+        self._begin_s = self.now_s = self._step * self._dt_s
         self.outcome = Outcome.FAILED
         self.reason = "the run broke down inside explore-bt"
+
+    @property
+    def is_over(self) -> bool:
+        """Whether everything stands still for good."""
+        return self._phase is _Phase.OVER
 
     def run(self) -> None:
         """Until everything stands still; ``outcome`` and ``reason`` then tell why."""
@@ -77,6 +100,7 @@ class Runner:
                 robot.act(self.now_s, self._dt_s)
             if is_tick:
                 self._show()
+                self._after_tick(self)
 
     def hold(self, reason: str) -> None:
         """One control period at rest, in the middle of a tick or before one: for an attendant in real time.
@@ -127,7 +151,7 @@ class Runner:
             self._phase = _Phase.DECIDING
         elif self.stop.is_raised:
             self._end(Outcome.STOPPED, self.stop.reason)
-        elif self.now_s > FIRST_SCAN_TIMEOUT_S:
+        elif self.now_s > self._begin_s + FIRST_SCAN_TIMEOUT_S:
             robot = blind[0]
             found = "no scan" if robot.scan() is None else "only scans without a valid beam"
             complaint = f"driver {robot.driver.name} gave {found} in {FIRST_SCAN_TIMEOUT_S:.0f} s"
@@ -142,12 +166,12 @@ class Runner:
             self._end(Outcome.BUDGET, spent)
             return
         for robot in self.robots:
-            if robot.name not in self._ended:  # a tree that is ticked again would begin anew
+            if robot.name not in self.ended:  # a tree that is ticked again would begin anew
                 self._tick_tree(robot)
-        if len(self._ended) < len(self.robots):
+        if len(self.ended) < len(self.robots):
             return
         for robot in self.robots:
-            if self._ended[robot.name] is not Status.SUCCESS:
+            if self.ended[robot.name] is not Status.SUCCESS:
                 self._end(Outcome.FAILED, _last_words(robot, Status.FAILURE))
                 return
         short = [
@@ -163,7 +187,7 @@ class Runner:
     def _tick_tree(self, robot: Robot) -> None:
         status = robot.decide()
         if status is not Status.RUNNING:
-            self._ended[robot.name] = status
+            self.ended[robot.name] = status
             robot.pilot.hold()
 
     def _budget_spent(self) -> str:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from explore_bt.exploration import ArgumentError, CoverageMeter, ate_rmse_m
@@ -30,6 +33,8 @@ class Scorekeeper:
         self._last_true: Pose2 | None = truth.pose() if truth else None
         self._true_stamps: list[float] = []
         self._true_poses: list[tuple[float, float, float]] = []
+        self._contacts = self._touched_by_people = 0
+        """Of the processes before this one."""
 
     def control_step(self, pose: Pose2, sent: MotionState, now_s: float, dt_s: float) -> None:
         """Take note at every control step.
@@ -66,13 +71,47 @@ class Scorekeeper:
         return Score(
             distance_m=self._distance_m,
             coverage=self._coverage,
-            contacts=self._truth.contacts() if self._truth else None,
-            touched_by_people=self._truth.touched_by_people() if self._truth else None,
+            contacts=self._contacts + self._truth.contacts() if self._truth else None,
+            touched_by_people=(
+                self._touched_by_people + self._truth.touched_by_people() if self._truth else None
+            ),
             clearance_m=self._clearance_m,
             min_clearance_m=self._min_clearance_m,
             mean_clearance_m=mean_m,
             distance_to_home_m=(self._last_true or self._last_pose).distance_to(self._home),
         )
+
+    def memory(self) -> Mapping[str, object]:
+        """Everything that a resumed run counts on from."""
+        score = self.score()
+        return {
+            "distance_m": self._distance_m,
+            "coverage": self._coverage,
+            "min_clearance_m": self._min_clearance_m,
+            "clearance_integral": self._clearance_integral,
+            "contacts": score.contacts or 0,
+            "touched_by_people": score.touched_by_people or 0,
+            "true_stamps": tuple(self._true_stamps),
+            "true_poses": tuple(self._true_poses),
+        }
+
+    def restore(self, memory: Mapping[str, Any]) -> None:
+        """Count on from there."""
+        self._distance_m, self._coverage = memory["distance_m"], memory["coverage"]
+        self._min_clearance_m = memory["min_clearance_m"]
+        self._clearance_integral = memory["clearance_integral"]
+        self._contacts, self._touched_by_people = memory["contacts"], memory["touched_by_people"]
+        self._true_stamps, self._true_poses = list(memory["true_stamps"]), list(memory["true_poses"])
+
+    def catch_up(self, score: Score, true_way: Trajectory | None) -> None:
+        """Count what was recorded after that memory was taken: the last score, and the true way since."""
+        self._distance_m, self._coverage = score.distance_m, score.coverage
+        self._min_clearance_m = score.min_clearance_m
+        self._clearance_integral = (score.mean_clearance_m or 0.0) * score.distance_m
+        self._contacts, self._touched_by_people = score.contacts or 0, score.touched_by_people or 0
+        if true_way is not None:
+            self._true_stamps += true_way.stamps_s.tolist()
+            self._true_poses += [(x, y, yaw) for x, y, yaw in true_way.poses.tolist()]
 
     @property
     def true_pose(self) -> Pose2 | None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import cast
 
 from explore_bt.types import OCCUPIED, OccupancyGrid
 
@@ -37,6 +39,16 @@ class TightPlaces:
         self._opened += again
         self._source = None
         return len(again)
+
+    def memory(self) -> Mapping[str, object]:
+        """All places, closed and opened again."""
+        return {"closed": tuple(self._positions), "opened": tuple(self._opened)}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Have them again."""
+        places = cast(Mapping[str, tuple[tuple[float, float], ...]], memory)
+        self._positions, self._opened = list(places["closed"]), list(places["opened"])
+        self._source = None
 
     def _times_opened(self, place: tuple[float, float]) -> int:
         return sum(math.dist(place, other) <= _SAME_M for other in self._opened)

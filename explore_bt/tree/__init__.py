@@ -21,6 +21,7 @@ from explore_bt.tree.control import (
     halt,
 )
 from explore_bt.tree.leaf import Leaf, Status
+from explore_bt.tree.memory import TreeMemory, restore_tree, tree_memory
 from explore_bt.tree.mocked import MockedLeaf, Round, Script, mocked
 from explore_bt.tree.ports import REQUIRED, Input, Key, Output, PortUnsetError
 from explore_bt.tree.probe import Probe, attach, detach, tick
@@ -55,10 +56,13 @@ __all__ = [
     "Status",
     "Subtree",
     "Timeout",
+    "TreeMemory",
     "attach",
     "detach",
     "halt",
     "mocked",
+    "restore_tree",
     "status_word",
     "tick",
+    "tree_memory",
 ]

@@ -29,6 +29,10 @@ class Leaf(py_trees.behaviour.Behaviour):
         kind: always ``behaviour``.
         type_key: the leaf's key in mission files.
         inputs, outputs: the declared ports by name.
+        keeps: names of attributes that outlive the process: a resumed run finds them as they were. What is
+            only about the running round need not be among them: a resumed leaf begins its round anew.
+        values: classes (frozen dataclasses, enumerations) that its outputs hold, beside those of
+            ``explore_bt.types``: a checkpoint keeps nothing of a class that nobody has declared.
     """
 
     kind: ClassVar[str] = "behaviour"
@@ -36,6 +40,8 @@ class Leaf(py_trees.behaviour.Behaviour):
     type_key: ClassVar[str]
     inputs: ClassVar[Mapping[str, Input[object]]] = {}
     outputs: ClassVar[Mapping[str, Output[object]]] = {}
+    keeps: ClassVar[tuple[str, ...]] = ()
+    values: ClassVar[tuple[type, ...]] = ()
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -65,6 +71,16 @@ class Leaf(py_trees.behaviour.Behaviour):
         unwritable = [port for port in self.outputs if not isinstance(self.bindings[port], Key)]
         if unknown or missing or unwritable:
             raise TypeError(f"{self.type_key}: unknown {unknown}, missing {missing}, not a key {unwritable}")
+
+    def memory(self) -> Mapping[str, object]:
+        """What it keeps, as far as it was ever set."""
+        return {name: getattr(self, name) for name in self.keeps if hasattr(self, name)}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Have it again."""
+        for name in self.keeps:
+            if name in memory:
+                setattr(self, name, memory[name])
 
     def say(self, message: str) -> None:
         """Give the reason for what the leaf is about, one phrase with numbers and units."""

@@ -9,13 +9,14 @@ __all__ = ["MappingResult", "Outcome", "Result", "Score"]
 
 
 class Outcome(enum.StrEnum):
-    """Why a mission ended; ``MAPPED``: a recorded log has come to its end."""
+    """Why a mission ended; ``MAPPED``: a recorded log has come to its end, ``CUT``: the process died."""
 
     EXPLORED = "explored"
     MAPPED = "mapped"
     STOPPED = "stopped"
     BUDGET = "budget"
     FAILED = "failed"
+    CUT = "cut"
 
 
 @dataclass(frozen=True, slots=True)

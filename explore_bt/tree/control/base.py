@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from py_trees.behaviour import Behaviour
@@ -115,6 +115,14 @@ class ControlNode(Behaviour):
             yield self
             if status is not Status.RUNNING or not self._woken:
                 break
+
+    def memory(self) -> Mapping[str, object]:
+        """What the running round has to remember to go on in another process; plain values."""
+        return {}
+
+    def restore(self, memory: Mapping[str, object]) -> None:  # noqa: ARG002  # most nodes remember nothing
+        """Go on in the round that ``memory`` tells of; what was running below begins its own round anew."""
+        self.status = Status.RUNNING
 
     def update(self) -> Status:
         """Unused: ``work`` takes its place."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import cast
+
 from py_trees.common import Status
 
 from explore_bt.tree.control.base import ControlNode, Work, halt
@@ -19,6 +22,15 @@ class Fallback(ControlNode):
     def initialise(self) -> None:
         """Start at the first child."""
         self._index = 0
+
+    def memory(self) -> Mapping[str, object]:
+        """The child it has come to."""
+        return {"index": self._index}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Go on at that child."""
+        super().restore(memory)
+        self._index = cast(int, memory["index"])
 
     def work(self) -> Work:
         """Go on from the child that was running."""

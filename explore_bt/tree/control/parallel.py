@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import cast
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -36,6 +37,16 @@ class Parallel(ControlNode):
     def initialise(self) -> None:
         """No child has ended."""
         self._ended: dict[int, Status] = {}
+
+    def memory(self) -> Mapping[str, object]:
+        """Which children have ended, and how."""
+        return {"ended": {index: status.value for index, status in self._ended.items()}}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Do not tick those again."""
+        super().restore(memory)
+        ended = cast(Mapping[int, str], memory["ended"])
+        self._ended = {index: Status(status) for index, status in ended.items()}
 
     def work(self) -> Work:
         """Tick those that have not ended."""

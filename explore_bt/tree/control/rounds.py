@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import cast
+
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
@@ -27,6 +30,15 @@ class Repeat(Decorator):
     def initialise(self) -> None:
         """No round is done."""
         self._done = 0
+
+    def memory(self) -> Mapping[str, object]:
+        """How many rounds are done."""
+        return {"done": self._done}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Go on counting."""
+        super().restore(memory)
+        self._done = cast(int, memory["done"])
 
     def work(self) -> Work:
         """Tick the child, round after round."""
@@ -65,6 +77,15 @@ class Retry(Decorator):
     def tries_left(self) -> int:
         """How many more attempts there will be if the present one fails."""
         return self.retries - self._failed
+
+    def memory(self) -> Mapping[str, object]:
+        """How many attempts have failed."""
+        return {"failed": self._failed}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Go on counting."""
+        super().restore(memory)
+        self._failed = cast(int, memory["failed"])
 
     def work(self) -> Work:
         """Tick the child, attempt after attempt."""

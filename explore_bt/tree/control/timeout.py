@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import cast
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -32,6 +33,15 @@ class Timeout(Decorator):
     def initialise(self) -> None:
         """The time begins."""
         self._begun_s = self._now_s()
+
+    def memory(self) -> Mapping[str, object]:
+        """When the time is up: mission time goes on where it stood."""
+        return {"deadline_s": self._deadline_s}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Keep the deadline."""
+        super().restore(memory)
+        self._deadline_s = cast(float, memory["deadline_s"])
 
     def work(self) -> Work:
         """Tick the child while there is time."""

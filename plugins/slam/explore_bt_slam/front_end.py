@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +40,8 @@ _BLIND_WINDOW_MOST_RAD = 0.8
 _BLIND_SCORE = 0.3
 _AS_GOOD = 0.85
 _FEW_M = 0.15
+_ASTRAY_M = 0.8
+"""A robot that nobody drives any more rolls on for so far: half a second until it brakes, and the braking."""
 _ANCHOR = np.diag([0.003, 0.003, 0.001]) ** 2
 
 
@@ -75,6 +78,7 @@ class FrontEnd:
         self._points = np.zeros((0, 2))
         self._surfels = SurfelMap((0.0, 0.0), 1.0)
         self._grid: ScoreGrid | None = None
+        self._is_astray = False
 
     @property
     def motion(self) -> Pose2:
@@ -128,7 +132,11 @@ class FrontEnd:
         points = deskew(scan, trail, self._max_range_m).points
         if min(points.shape[0], self._surfels.count_near(prediction.xy, self._max_range_m)) < _FEWEST_POINTS:
             return self._carried(scan, prediction)
-        if self._filter.is_blind and self._points.shape[0]:
+        if self._is_astray:
+            prediction, self._is_astray = self._placed(points, prediction), False
+            # it did not come here during this sweep: nothing of that way may bend it
+            last = prediction.compose(self._filter.motion.inverse())
+        elif self._filter.is_blind and self._points.shape[0]:
             prediction = self._guessed(points, last, prediction)
         found = self._refine(points, self._kiss.align(points, prediction), prediction, covariance)
         if found.overlap < _DOUBTFUL_OVERLAP or found.residual_m > _DOUBTFUL_RESIDUAL_M:
@@ -153,6 +161,19 @@ class FrontEnd:
         self._filter.correct(motion, posterior)
         weakness = _OPEN_DIRECTION if found.weakest_sigma_m > _WEAK_SIGMA_M else ""
         return Registered(found.pose, sweep, posterior, found.overlap, weakness=weakness)
+
+    def stand(self) -> None:
+        """The robot was stopped, perhaps a little farther on: the next scan says where."""
+        self._filter.stand()
+        self._is_astray = True
+
+    def arrays(self) -> dict[str, NDArray[np.float64]]:
+        """What the prediction rests on; the local map is gathered anew."""
+        return self._filter.arrays()
+
+    def restore(self, arrays: Mapping[str, NDArray[np.float64]]) -> None:
+        """Predict on from there."""
+        self._filter.restore(arrays)
 
     def relocate(self, points: NDArray[np.float64], surfels: SurfelMap) -> None:
         """A keyframe was made here: take its surroundings as the local map, count errors from it.
@@ -229,6 +250,13 @@ class FrontEnd:
         expected = search(self._scores(), _few(points), prediction, 0.0, 0.0, rivals=1.0)
         # along a plain wall all places fit alike: there the motion goes on as it was
         return prediction if expected.score >= _AS_GOOD * match.score else match.pose
+
+    def _placed(self, points: NDArray[np.float64], believed: Pose2) -> Pose2:
+        """Where about a place a scan fits, turned by anything; the place itself if it fits there as well."""
+        scores, few = self._scores(), _few(points)
+        match = search(scores, few, believed, _ASTRAY_M, math.pi, rivals=1.0, least=_BLIND_SCORE)
+        expected = search(scores, few, believed, 0.0, 0.0, rivals=1.0)
+        return believed if expected.score >= _AS_GOOD * match.score else match.pose
 
     def _scores(self) -> ScoreGrid:
         if self._grid is None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -21,13 +22,14 @@ from explore_bt.types import (
     Scan2D,
     Trajectory,
 )
+from explore_bt_slam.frozen_state import FrozenState
 from explore_bt_slam.health import HealthMonitor
 from explore_bt_slam.inertial import InertialFilter
 from explore_bt_slam.journal import Journal
 from explore_bt_slam.mapper import Mapper
 from explore_bt_slam.options import GroundTruthOptions
 from explore_bt_slam.scan_check import fault_of
-from explore_bt_slam.storage import pack_sweeps, read_arrays, unpack_sweeps, write_arrays
+from explore_bt_slam.storage import read_arrays, unpack_sweeps
 from explore_bt_slam.sweep import deskew
 
 __all__ = ["GroundTruthSlam"]
@@ -46,6 +48,7 @@ class GroundTruthSlam(Slam):
         super().__init__(options)
         self._settings = GroundTruthOptions.model_validate(options.model_dump())
         self._truth: GroundTruth | None = None
+        self._is_waiting = False
         self._begin(0.25, Pose2.identity())
 
     def setup(self, context: RobotContext) -> None:
@@ -60,9 +63,12 @@ class GroundTruthSlam(Slam):
             )
         self._begin(context.footprint_radius_m, context.start or context.truth.pose())
         self._truth = context.truth
+        self._is_waiting = context.resumed is not None
 
     def update(self, measurement: Measurement) -> None:
         """Draw scans from where the robot is when they arrive; the gyroscope straightens them."""
+        if self._is_waiting:
+            return
         if isinstance(measurement, Imu):
             numbers = (measurement.stamp_s, *measurement.angular_velocity_rps)
             if np.isfinite([*numbers, *measurement.linear_acceleration_mps2]).all():
@@ -101,15 +107,11 @@ class GroundTruthSlam(Slam):
 
     def save(self, folder: Path) -> None:
         """One file, ``slam.npz``: kept sweeps, grid, trajectory."""
-        stamps, keyframes, relatives = self._journal.arrays()
-        arrays = {
-            **pack_sweeps(self._mapper.kept),
-            **self._mapper.arrays(),
-            "journal_stamps": stamps,
-            "journal_keyframes": keyframes,
-            "journal_relatives": relatives,
-        }
-        write_arrays(folder, self.name, self._settings.resolution, arrays)
+        self._frozen().write(folder, self.name, self._settings.resolution)
+
+    def begin_save(self, folder: Path, before: Path | None) -> Callable[[], None]:
+        """``slam.npz``, and the sweeps apart, of which only the new ones are written."""
+        return partial(self._frozen().write_quickly, folder, self.name, self._settings.resolution, before)
 
     def load(self, folder: Path) -> None:
         """Go on in a saved map, wherever the simulator has put the robot."""
@@ -118,6 +120,20 @@ class GroundTruthSlam(Slam):
         self._journal.restore(
             arrays["journal_stamps"], arrays["journal_keyframes"], arrays["journal_relatives"]
         )
+
+    def pick_up(self) -> None:
+        """What was recorded before could not be drawn: nobody knows the truth of then."""
+        self._is_waiting = False
+
+    def _frozen(self) -> FrozenState:
+        stamps, keyframes, relatives = self._journal.arrays()
+        arrays = {
+            **{name: array.copy() for name, array in self._mapper.arrays().items()},
+            "journal_stamps": stamps,
+            "journal_keyframes": keyframes,
+            "journal_relatives": relatives,
+        }
+        return FrozenState((), tuple(self._mapper.kept), arrays)
 
     def _begin(self, body_radius_m: float, start: Pose2) -> None:
         self._filter = InertialFilter()

@@ -9,6 +9,7 @@ through places where the lidar says nothing about it (a plain corridor).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,8 @@ _IMU_SILENCE_S = 0.1
 _SPAN_GAIN = 0.1
 _UNDER_WAY_MPS = 0.2
 _UNDER_WAY_RPS = 0.3
+_STOPPED = np.diag([0.3, 0.3, 0.5]) ** 2
+"""How far a robot may have rolled on and turned, m² and rad², when it was stopped and nobody measured."""
 _WHEEL_FLOOR = np.array([0.01, 0.01, 0.005])
 _WHEEL_SHARE = np.array([[0.1, 0.02], [0.1, 0.02], [0.05, 0.1]])
 """Standard deviations of a step by the wheels: x, y (m), yaw (rad); what is always there, and per metre and
@@ -222,6 +225,37 @@ class InertialFilter:
             self._span_s += _SPAN_GAIN * (span_s - self._span_s) if self._span_s else span_s
             self._yaw_rate_rps = motion.yaw_rad / max(span_s, self._span_s)
         self._restart()
+
+    def stand(self) -> None:
+        """The robot was stopped while nobody measured: it rests, about where it was predicted to be."""
+        self._restart()
+        self._velocity, self._yaw_rate_rps = np.zeros(2), 0.0
+        self._imu_s = self._wheels_s = -math.inf
+        self._odometry = None
+        self._covariance[3:5, :] = self._covariance[:, 3:5] = 0.0
+        self._covariance[3:5, 3:5] = np.eye(2) * self._noise.velocity_start**2
+        self.anchor(_STOPPED)
+
+    def arrays(self) -> dict[str, NDArray[np.float64]]:
+        """Speed, biases and how sure they are; the pose counts from where it is now."""
+        return {
+            "filter_time": np.array(math.nan if self._time_s is None else self._time_s),
+            "filter_velocity": self._velocity.copy(),
+            "filter_bias": self._bias.copy(),
+            "filter_covariance": self._covariance.copy(),
+            "filter_rates": np.array([self._yaw_rate_rps, self._imu_s, *self._imu, self._span_s]),
+        }
+
+    def restore(self, arrays: Mapping[str, NDArray[np.float64]]) -> None:
+        """Predict on from there; nothing where a map was saved without these."""
+        if "filter_time" not in arrays or math.isnan(arrays["filter_time"]):
+            return
+        self._velocity, self._bias = arrays["filter_velocity"].copy(), arrays["filter_bias"].copy()
+        self._covariance = arrays["filter_covariance"].copy()
+        self._yaw_rate_rps, self._imu_s, *imu, self._span_s = arrays["filter_rates"].tolist()
+        self._imu = (imu[0], imu[1], imu[2])
+        self._standstill.end()
+        self._begin(float(arrays["filter_time"]))
 
     def distrust(self) -> NDArray[np.float64]:
         """The prediction was proved wrong: the pose is as good as unknown, the speed unsure.

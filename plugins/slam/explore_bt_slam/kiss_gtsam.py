@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -26,7 +27,7 @@ from explore_bt_slam.cloud_pipeline import CloudPipeline
 from explore_bt_slam.cloud_warm_up import warm_up_clouds
 from explore_bt_slam.options import KissGtsamOptions
 from explore_bt_slam.pipeline import Pipeline
-from explore_bt_slam.storage import read_arrays, write_arrays
+from explore_bt_slam.storage import read_arrays
 from explore_bt_slam.warm_up import warm_up
 
 __all__ = ["KissGtsam"]
@@ -105,7 +106,12 @@ class KissGtsam(Slam):
 
     def save(self, folder: Path) -> None:
         """One file, ``slam.npz``: keyframes, graph, kept sweeps, trajectory."""
-        write_arrays(folder, self.name, self._settings.resolution, self._pipeline.arrays())
+        self._pipeline.frozen().write(folder, self.name, self._settings.resolution)
+
+    def begin_save(self, folder: Path, before: Path | None) -> Callable[[], None]:
+        """``slam.npz``, and keyframes and sweeps apart, of which only the new ones are written."""
+        frozen = self._pipeline.frozen()
+        return partial(frozen.write_quickly, folder, self.name, self._settings.resolution, before)
 
     def load(self, folder: Path) -> None:
         """Go on in a saved map, at ``context.start``, or where the saved trajectory ended if None."""
@@ -113,6 +119,12 @@ class KissGtsam(Slam):
         if "voxel_pool" in arrays:
             self._pipeline = self._new_cloud_pipeline()
         self._pipeline.restore(arrays, self._start)
+        if self._context.resumed is not None:
+            self._pipeline.go_on(arrays)
+
+    def pick_up(self) -> None:
+        """The next scan is looked for about the place, whichever way the robot has been turned."""
+        self._pipeline.pick_up()
 
     def _take_cloud(self, cloud: PointCloud) -> None:
         """The first lidar that speaks, planar or 3D, is the one that is listened to."""

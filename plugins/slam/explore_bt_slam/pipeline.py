@@ -13,6 +13,7 @@ from explore_bt_slam.back_end import BackEnd
 from explore_bt_slam.camera import Camera
 from explore_bt_slam.exported_graph import graph_of
 from explore_bt_slam.front_end import FrontEnd, Registered
+from explore_bt_slam.frozen_state import FrozenState
 from explore_bt_slam.health import HealthMonitor
 from explore_bt_slam.journal import Journal
 from explore_bt_slam.keyframes import KeyframeRule
@@ -23,8 +24,6 @@ from explore_bt_slam.seen_step import fuse_step
 from explore_bt_slam.storage import (
     Arrays,
     pack_edges,
-    pack_keyframes,
-    pack_sweeps,
     unpack_edges,
     unpack_keyframes,
     unpack_sweeps,
@@ -142,21 +141,21 @@ class Pipeline:
         """The pose graph."""
         return MapStructure(graph=graph_of(self.back.poses, self.back.edges))
 
-    def arrays(self) -> Arrays:
-        """The whole state."""
+    def frozen(self) -> FrozenState:
+        """The whole state, which goes on changing."""
         stamps, keyframes, relatives = self.journal.arrays()
-        return {
-            **pack_keyframes(self.back.keyframes),
+        arrays = {
             **pack_edges(self.back.edges),
-            **pack_sweeps(self.mapper.kept),
-            **self.mapper.arrays(),
+            **{name: array.copy() for name, array in self.mapper.arrays().items()},
             **self.back.looks.arrays(),
-            "graph_poses": self.back.poses,
+            **self.front.arrays(),
+            "graph_poses": self.back.poses.copy(),
             "journal_stamps": stamps,
             "journal_keyframes": keyframes,
             "journal_relatives": relatives,
             "last_pose": self.pose.as_array(),
         }
+        return FrozenState(tuple(self.back.keyframes), tuple(self.mapper.kept), arrays)
 
     def restore(self, arrays: Arrays, start: Pose2 | None) -> None:
         """Go on in a saved map, at ``start``, or where it ended if None."""
@@ -170,6 +169,14 @@ class Pipeline:
             arrays["journal_stamps"], arrays["journal_keyframes"], arrays["journal_relatives"]
         )
         self._enter(start or Pose2(*arrays["last_pose"].tolist()))
+
+    def go_on(self, arrays: Arrays) -> None:
+        """After ``restore``: what comes next was measured right after the state was saved."""
+        self.front.restore(arrays)
+
+    def pick_up(self) -> None:
+        """The robot was stopped meanwhile, and stands about where it was."""
+        self.front.stand()
 
     def _begin(self, scan: Scan2D) -> None:
         first = self.front.first(scan, self._start)

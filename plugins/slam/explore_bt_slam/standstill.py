@@ -28,6 +28,10 @@ class Standstill:
         self._count = 0
         self._is_over = False
 
+    def end(self) -> None:
+        """The robot has moved before."""
+        self._is_over = True
+
     def rates_rps(self, imu: Imu) -> list[float]:
         """Yaw rates that were measured at rest, each handed out once; rad/s, ``base_link``."""
         if self._is_over:

@@ -18,10 +18,12 @@ from explore_bt.types import Pose2
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.mapper import KeptSweep
 from explore_bt_slam.pose_graph import Edge
+from explore_bt_slam.segments import read_segments
 from explore_bt_slam.surfels import normals_of
 from explore_bt_slam.sweep import Sweep
 
 __all__ = [
+    "SEGMENTED",
     "Arrays",
     "pack_edges",
     "pack_keyframes",
@@ -35,22 +37,25 @@ __all__ = [
 
 Arrays = dict[str, NDArray[Any]]
 
+SEGMENTED = ("keyframes", "sweeps")
 _FILE_NAME = "slam.npz"
 _FORMAT = "explore-bt-slam/1"
 
 
-def write_arrays(folder: Path, plugin: str, resolution_m: float, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Write ``slam.npz`` into ``folder``, which is made if need be."""
+def write_arrays(
+    folder: Path, plugin: str, resolution_m: float, arrays: Mapping[str, NDArray[Any]], *, packed: bool = True
+) -> None:
+    """Write ``slam.npz`` into ``folder``, which is made if need be; ``packed`` takes longer and less room."""
     meta = json.dumps({"format": _FORMAT, "plugin": plugin, "resolution_m": resolution_m})
     buffer = io.BytesIO()
     everything: dict[str, Any] = {"meta": np.array(meta), **arrays}
-    np.savez_compressed(buffer, **everything)
+    (np.savez_compressed if packed else np.savez)(buffer, **everything)
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / _FILE_NAME, buffer.getvalue())
 
 
 def read_arrays(folder: Path, plugin: str, resolution_m: float) -> Arrays:
-    """The arrays that ``write_arrays`` wrote.
+    """The arrays that ``write_arrays`` wrote, and those that ``write_segments`` wrote beside them.
 
     Raises:
         UserError: no such file, a damaged one, another plugin's, or another resolution.
@@ -61,6 +66,8 @@ def read_arrays(folder: Path, plugin: str, resolution_m: float) -> Arrays:
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
+        for name in SEGMENTED:
+            arrays |= read_segments(folder, name)
         meta = json.loads(str(arrays.pop("meta")))
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as fault:
         raise UserError(f"{path} is damaged ({fault}); save the map again") from fault

@@ -17,6 +17,10 @@ class BatteryGauge:
         self._life_s = life_s
         self._samples = 0
 
+    def begin(self, track: Track) -> None:
+        """Measure from here on: a resumed run begins in the middle."""
+        self._samples = track.due(_RATE_HZ)
+
     def measure(self, track: Track) -> list[Battery]:
         """The samples due since the last call."""
         due = track.due(_RATE_HZ)

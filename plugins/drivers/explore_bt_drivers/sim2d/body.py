@@ -27,17 +27,16 @@ Ramp = tuple[float, float, int, int, float]
 
 
 class Track:
-    """The newest states of a body, one per internal step.
+    """The newest states of a body, one per internal step, from ``step`` on.
 
     Attributes:
         last_step: the newest one; its time is ``last_step * STEP_S``.
     """
 
-    def __init__(self, start: Pose2) -> None:
+    def __init__(self, start: Pose2, step: int = 0) -> None:
         self._rows = np.zeros((_ROOM_STEPS, 7))
         self._rows[0, :3] = start.as_array()
-        self.first_step = 0
-        self.last_step = 0
+        self.first_step = self.last_step = step
 
     @property
     def states(self) -> NDArray[np.float64]:
@@ -98,8 +97,10 @@ class Body:
         contacts: how many separate times it has.
     """
 
-    def __init__(self, world: World, start: Pose2, radius_m: float, limits: MotionLimits) -> None:
-        self.track = Track(start)
+    def __init__(
+        self, world: World, start: Pose2, radius_m: float, limits: MotionLimits, step: int = 0
+    ) -> None:
+        self.track = Track(start, step)
         self.contacts = 0
         self.world = world
         self._radius_m = radius_m

@@ -32,6 +32,10 @@ class InertialUnit:
         """The constant error of the turn rate about z, drawn per seed."""
         return float(self._bias[2])
 
+    def begin(self, track: Track) -> None:
+        """Measure from here on: a resumed run begins in the middle."""
+        self._samples = track.due(self._rate_hz)
+
     def measure(self, track: Track) -> list[Imu]:
         """The samples taken since the last call."""
         due = track.due(self._rate_hz)

@@ -50,6 +50,10 @@ class Lidar:
         self._angles.flags.writeable = self._times.flags.writeable = False
         self._sweeps = 0
 
+    def begin(self, track: Track) -> None:
+        """Measure from here on: a resumed run begins in the middle."""
+        self._sweeps = track.due(self._rate_hz)
+
     def measure(self, track: Track) -> list[Scan2D]:
         """The sweeps finished since the last call."""
         finished = track.due(self._rate_hz)

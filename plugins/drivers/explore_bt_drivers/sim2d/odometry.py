@@ -39,6 +39,10 @@ class Wheels:
         self._true = (start.x, start.y, start.yaw_rad)
         self._samples = 0
 
+    def begin(self, track: Track) -> None:
+        """Measure from here on: a resumed run begins in the middle."""
+        self._samples = track.due(self._rate_hz)
+
     def measure(self, track: Track) -> list[WheelOdometry]:
         """The poses reckoned since the last call."""
         due = track.due(self._rate_hz)

@@ -34,8 +34,10 @@ class Simulation(ManualClock):
     def __init__(
         self, world: World, options: Sim2dOptions, start: Pose2, context: RobotContext, crowd: Crowd
     ) -> None:
-        super().__init__()
-        self.body = Body(world, start, options.radius, options.limits)
+        begin_s = context.resumed.stamp_s if context.resumed else 0.0
+        super().__init__(begin_s)
+        step = math.floor(begin_s / STEP_S + ON_STEP)
+        self.body = Body(world, start, options.radius, options.limits, step)
         self.crowd = crowd
         self._scenery = Scenery(world, options.radius)
         self._lidar = Lidar(world, options, context.rng("lidar"), context.rng("lidar dropout"), crowd)
@@ -46,6 +48,8 @@ class Simulation(ManualClock):
             *(() if options.battery_life is None else (BatteryGauge(options.battery_life),)),
         )
         self._queue: list[Measurement] = []
+        for sensor in self._sensors:
+            sensor.begin(self.body.track)
 
     def wait_until(self, time_s: float) -> None:
         """Advance the world to ``time_s``."""

@@ -23,13 +23,15 @@ SPARE_M = 0.025
 class Sim2dTruth(GroundTruth):
     """Reads the body, the crowd and the world; changes nothing."""
 
-    def __init__(self, world: World, body: Body, crowd: Crowd, radius_m: float, range_m: float) -> None:
+    def __init__(
+        self, world: World, start: Pose2, body: Body, crowd: Crowd, radius_m: float, range_m: float
+    ) -> None:
         self._drawn = world
         self._body = body
         self._crowd = crowd
         self._radius_m = radius_m
         self._range_m = range_m
-        self._start = body.pose
+        self._start = start
 
     def pose(self) -> Pose2:
         """Where the robot is now, ``map`` frame."""
