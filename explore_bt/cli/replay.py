@@ -37,7 +37,8 @@ def replay(
 ) -> None:
     """Look at any moment of a run that is over, in a browser.
 
-    Tree, map and timeline are on one page. A recording that was cut off is shown as far as it goes. Ctrl-C ends it.
+    Tree, map and timeline are on one page. A recording that was cut off is shown as far as it goes.
+    Ctrl-C ends it.
     """
     from explore_bt.debug.web import Desk, PageServer, RunFeed
     from explore_bt.recording import read_recording
