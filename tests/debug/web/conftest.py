@@ -45,7 +45,6 @@ class Asker:
 
     def __init__(self, socket: ClientConnection) -> None:
         self.socket = socket
-        self.news: list[dict[str, Any]] = []
         self._count = 0
 
     def ask(self, ask: str, **members: Any) -> dict[str, Any]:
@@ -53,23 +52,11 @@ class Asker:
         self.socket.send(json.dumps({"id": self._count, "ask": ask, **members}))
         return self.hear(self._count)
 
-    def do(self, do: str, **members: Any) -> Any:
-        return self.ask("command", command={"do": do, **members})
-
     def hear(self, id_: int | None) -> dict[str, Any]:
         while True:
             message = json.loads(self.socket.recv(timeout=PATIENCE_S))
-            if "news" in message:
-                self.news.append(message["news"])
-            elif message["id"] == id_:
+            if message.get("id", id_) == id_ and "news" not in message:
                 return message
-
-    def hear_news(self, wanted) -> dict[str, Any]:
-        """The first news, of those not heard yet, for which ``wanted`` holds."""
-        while True:
-            message = json.loads(self.socket.recv(timeout=PATIENCE_S))
-            if "news" in message and wanted(message["news"]):
-                return message["news"]
 
 
 @contextmanager

@@ -266,7 +266,7 @@ def test_folding_hides_what_does_not_run_and_searching_finds_it(shown, see):
     assert seen.run(count) == 1
 
 
-def test_the_help_names_every_key_and_each_does_something(shown, see):
+def test_the_keys_are_listed_and_the_list_closes_again(shown, see):
     seen = see(shown.url)
     seen.key("?")
     assert "status" in seen.page.inner_text("dialog")

@@ -1,6 +1,7 @@
 // The page: puts the views together over one run, recorded or going on.
 
-import { byId, glyph, make } from "./dom.js";
+import { drawBars } from "./bars.js";
+import { byId, make } from "./dom.js";
 import { fillHelp, listen } from "./keys.js";
 import { Link } from "./link.js";
 import { LAYERS } from "./map_layers.js";
@@ -12,7 +13,6 @@ import { RunState } from "./run_state.js";
 import { after, Story } from "./story.js";
 import { TimelineView } from "./timeline_view.js";
 import { TreeView } from "./tree_view.js";
-import { clock, metres, percent, speed } from "./words.js";
 
 const COLOURS = 6;
 const RATES = [1, 4, 16];
@@ -251,7 +251,7 @@ class Page {
       robot: { name: this.robot, nodes: this.nodes, story: this.story.robots.get(this.robot), parents: this.#parents() },
     });
     this.#drawTab(state, time);
-    this.#drawBars(state, time);
+    drawBars(this, state, time);
   }
 
   #parents() { return new Set(this.nodes.map((node) => node.parent)); }
@@ -281,33 +281,6 @@ class Page {
   #drawReasons(time) {
     for (const line of this.story.lines) if (line.id !== null && !line.nodeName) line.nodeName = this.run.trees[line.robot][line.id].name;
     this.reasons.show(this.story.lines, this.#names, this.robot, time);
-  }
-
-  #drawBars(state, time) {
-    const { player, debug } = this, figures = state.newest.state;
-    byId("clock").textContent = `${clock(time)} / ${clock(player.end, 0)}`;
-    const line = byId("timeline");
-    line.setAttribute("aria-valuenow", time.toFixed(1));
-    line.setAttribute("aria-valuemax", player.end.toFixed(1));
-    line.setAttribute("aria-valuetext", clock(time));
-    const held = this.live && player.following ? debug.paused : !player.playing;
-    setSign(byId("play"), player.playing ? "pause" : "running", player.playing ? "Hold" : "Play");
-    byId("play").hidden = this.live && player.following;
-    byId("speeds").hidden = this.live && player.following;
-    setSign(byId("pause"), debug.paused ? "running" : "pause", debug.paused ? "Run" : "Pause");
-    byId("live").setAttribute("aria-pressed", String(player.following));
-    document.body.classList.toggle("past", this.live && !player.following);
-    document.body.classList.toggle("held", held);
-    for (const each of byId("run-controls").querySelectorAll("button")) each.disabled = debug.over;
-    byId("why").textContent = this.live && !player.following ? "looking back" : debug.over ? `over: ${debug.why}` : this.live ? debug.why : "";
-    if (!figures) return;
-    const told = [["mapped", figures.coverage === null ? "–" : percent(figures.coverage)], ["driven", metres(figures.distance_m)], ["speed", speed(figures.speed_mps)]];
-    if (figures.health !== "ok") told.push(["SLAM", figures.health]);
-    if (state.newest.gate?.braking) told.push(["gate", "brakes"]);
-    const key = told.join();
-    if (byId("figures").dataset.key === key) return;
-    byId("figures").dataset.key = key;
-    byId("figures").replaceChildren(...told.map(([name, value]) => make("div", { class: name === "SLAM" || name === "gate" ? "bad" : "" }, make("dt", {}, name), make("dd", {}, value))));
   }
 
   #showRobots() {
@@ -410,12 +383,6 @@ class Page {
 function matches(pattern, node) {
   const expression = pattern.split("*").map((part) => part.replace(/[.+?^${}()|[\]\\]/g, "\\$&")).join(".*");
   return new RegExp(`^(?:.*/)?${expression}$`).test(node.path);
-}
-
-function setSign(button, name, words) {
-  if (button.dataset.sign === name) return;
-  button.dataset.sign = name;
-  button.replaceChildren(glyph(name), make("span", {}, words));
 }
 
 window.page = new Page();

@@ -24,10 +24,10 @@ function told(value, depth) {
   if (typeof value !== "object") return String(value);
   if (depth > 2) return "…";
   if (Array.isArray(value)) return `[${value.map((each) => told(each, depth + 1)).join(", ")}]`;
-  return told_object(value, depth);
+  return toldObject(value, depth);
 }
 
-function told_object(value, depth) {
+function toldObject(value, depth) {
   if (value.class === "Pose2") return `(${told(value.x)}, ${told(value.y)}, ${(value.yaw_rad * 180 / Math.PI).toFixed(0)}°)`;
   if (value.class === "Waypoint") return `${told(value.pose, depth)}${value.reason ? ` ${value.reason}` : ""}`;
   if (value.class === "sequence") return `${value.length} items … ${told(value.last, depth + 1)}`;

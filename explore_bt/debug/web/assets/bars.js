@@ -1,0 +1,36 @@
+// The bars above and below: figures at the moment shown, buttons as they stand, the clock.
+
+import { byId, glyph, make } from "./dom.js";
+import { clock, metres, percent, speed } from "./words.js";
+
+/** Brings them up to date with the page's player and debugger. */
+export function drawBars(page, state, time) {
+  const { player, debug, live } = page, figures = state.newest.state;
+  byId("clock").textContent = `${clock(time)} / ${clock(player.end, 0)}`;
+  const line = byId("timeline");
+  line.setAttribute("aria-valuenow", time.toFixed(1));
+  line.setAttribute("aria-valuemax", player.end.toFixed(1));
+  line.setAttribute("aria-valuetext", clock(time));
+  setSign(byId("play"), player.playing ? "pause" : "running", player.playing ? "Hold" : "Play");
+  byId("play").hidden = live && player.following;
+  byId("speeds").hidden = live && player.following;
+  setSign(byId("pause"), debug.paused ? "running" : "pause", debug.paused ? "Run" : "Pause");
+  byId("live").setAttribute("aria-pressed", String(player.following));
+  document.body.classList.toggle("past", live && !player.following);
+  for (const each of byId("run-controls").querySelectorAll("button")) each.disabled = debug.over;
+  byId("why").textContent = live && !player.following ? "looking back" : debug.over ? `over: ${debug.why}` : live ? debug.why : "";
+  if (!figures) return;
+  const told = [["mapped", figures.coverage === null ? "–" : percent(figures.coverage)], ["driven", metres(figures.distance_m)], ["speed", speed(figures.speed_mps)]];
+  if (figures.health !== "ok") told.push(["SLAM", figures.health]);
+  if (state.newest.gate?.braking) told.push(["gate", "brakes"]);
+  const key = told.join();
+  if (byId("figures").dataset.key === key) return;
+  byId("figures").dataset.key = key;
+  byId("figures").replaceChildren(...told.map(([name, value]) => make("div", { class: name === "SLAM" || name === "gate" ? "bad" : "" }, make("dt", {}, name), make("dd", {}, value))));
+}
+
+function setSign(button, name, words) {
+  if (button.dataset.sign === name) return;
+  button.dataset.sign = name;
+  button.replaceChildren(glyph(name), make("span", {}, words));
+}
