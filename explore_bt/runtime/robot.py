@@ -22,13 +22,12 @@ from explore_bt.interfaces import (
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.fault_log import FaultLog
-from explore_bt.runtime.gate_news import GateNews
-from explore_bt.runtime.health_news import HealthNews
 from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.resumption import Cut, check_clock
 from explore_bt.runtime.robot_keeping import Remembering, RobotKeeping
+from explore_bt.runtime.robot_news import RobotNews
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
 from explore_bt.runtime.sketch import Sketch
@@ -37,7 +36,6 @@ from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
-from explore_bt.runtime.tree_news import TreeNews
 from explore_bt.runtime.way_finder import WayFinder
 from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
@@ -96,10 +94,8 @@ class Robot:
         self._purse = Purse(mission.limits)
         self._slam_fault = ""
         self._faults = FaultLog(self.name, self.tell)
-        self._health_news = HealthNews()
         self._held_s = 0.0
-        self._gate_news = GateNews()
-        self._tree_news = TreeNews(self.tree)
+        self._news = RobotNews(self.tree, self.tell)
         self._people = People()
         self.moving: tuple[MovingObstacle, ...] = ()
 
@@ -251,7 +247,7 @@ class Robot:
             self._take(measurement)
         if any(isinstance(measurement, Scan2D) for measurement in measurements):
             self._show_gate()
-        self._watch_health()
+        self._news.of_health(self.estimate(), self._clock_s())
 
     def act(self, now_s: float, dt_s: float) -> None:
         """One control period; a controller that breaks down is braked for."""
@@ -260,7 +256,8 @@ class Robot:
         except Exception as error:  # any plugin's failure ends in a controlled stop, never in a crash
             self._faults.note(f"controller {self._controller.name}", error)
             self.pilot.brake(f"controller {self._controller.name} failed: {error!r}", now_s, dt_s)
-        self._watch_gate()
+        if self._scan is not None:  # before the first one there is nothing to drive by, nor to drive to
+            self._news.of_gate(self.pilot, self._clock_s())
         self._keep_score(now_s, dt_s)
 
     def hold(self, reason: str, now_s: float, dt_s: float) -> None:
@@ -280,8 +277,7 @@ class Robot:
         try:
             for node in tick(self.tree.root, self._probe):
                 self._counts.note(node)
-                for news in self._tree_news.of(node, self.now_s()):
-                    self.tell(*news)
+                self._news.of_node(node, self.now_s())
         except Exception as error:  # a leaf is a plugin too: its failure ends the mission, not the process
             reason = str(error) if isinstance(error, PortUnsetError) else repr(error)
             self.blackboard.write(REASON_KEY, f"a leaf failed: {reason}")
@@ -301,7 +297,7 @@ class Robot:
         """Stop the body and let go of it."""
         self.driver.close()
 
-    # --- for checkpoints ----------------------------------------------------------------------------
+    # --- for observers and checkpoints --------------------------------------------------------------
 
     def memory(self) -> RobotMemory:
         """See ``RobotKeeping.memory``."""
@@ -316,8 +312,6 @@ class Robot:
         self.slam.pick_up()
         if cut.score is not None:
             self.scores.catch_up(cut.score, cut.true_way)
-
-    # --- for observers ------------------------------------------------------------------------------
 
     def snapshot(self) -> RobotSnapshot:
         """What observers are shown after a tick; what was measured and who was ticked is shown once."""
@@ -389,15 +383,14 @@ class Robot:
         """(N, 2) metres, ``map`` frame: the newest scan's returns, less noisy close by."""
         if self._scan is None:
             return np.empty((0, 2))
-        points = self._estimate_of_scan(self._scan).T_map_base.apply(steadied(self._scan).points())
-        return np.ascontiguousarray(points)
+        pose = self._estimate_of_scan(self._scan).T_map_base
+        return np.ascontiguousarray(pose.apply(steadied(self._scan).points()))
 
     def _estimate_of_scan(self, scan: Scan2D) -> Estimate:
         """The newest, carried forward to the scan where SLAM lags behind."""
         estimate = self.slam.estimate()
-        if estimate.stamp_s >= scan.stamp_s:
-            return estimate
-        return self.pilot.predict(estimate, scan.stamp_s)
+        is_late = estimate.stamp_s < scan.stamp_s
+        return self.pilot.predict(estimate, scan.stamp_s) if is_late else estimate
 
     def _read(self) -> Sequence[Measurement]:
         try:
@@ -405,16 +398,3 @@ class Robot:
         except Exception as error:  # silence is handled: a stale scan brakes the robot
             self._faults.note(f"driver {self.driver.name}", error)
             return ()
-
-    def _watch_health(self) -> None:
-        estimate = self.estimate()
-        news = self._health_news.of(estimate, self._clock_s())
-        if news:
-            self.tell("info" if estimate.health is Health.OK else "warning", "slam", news)
-
-    def _watch_gate(self) -> None:
-        if self._scan is None:
-            return  # before the first one there is nothing to drive by, nor to drive to
-        news = self._gate_news.of(self.pilot.gate_reason, self.pilot.held_by, self._clock_s())
-        if news:
-            self.tell("warning" if self._gate_news.is_held else "info", "safety gate", news)
