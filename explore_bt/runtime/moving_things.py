@@ -31,10 +31,14 @@ _SAME_M = 0.45
 _GAIN, _RATE_GAIN = 0.65, 0.3
 """Of the filter for place and velocity: how much of a surprise is believed at once."""
 _HITS = 2
+_FEW_HITS, _VELOCITY_OFF_MPS = 5, 0.5
+"""Before so many hits nothing is known of a velocity, from then on it is right to so much."""
 _SURELY_M = 0.6
 """Who has come so far is somebody: people are about."""
 _MOVED_M, _LEAST_MPS = 0.15, 0.15
 """What came less far than this, or slower, may be the flicker of an edge, or a thin leg seen at last."""
+_BESIDE_M = 1.0
+"""What is new so near to somebody is another at once: people who meet look like one for a while."""
 _HOLD_S = 5.0
 """What has paused for so long is left to the map."""
 _LOST_S, _LOST_NEAR_S, _NEAR_M = 0.3, 1.0, 1.5
@@ -80,14 +84,24 @@ class _Thing:
         moved_m = math.dist(centre, self.first_xy)
         self.has_moved |= moved_m > max(_MOVED_M, _LEAST_MPS * (stamp_s - self.first_s))
 
+    def come_apart(self) -> None:
+        """It is somebody who walked with another, or behind, and was taken for one with them."""
+        self.walks, self.has_moved, self.hits = True, True, _HITS
+
     @property
     def is_sure(self) -> bool:
         return self.walks and self.has_moved and self.hits >= _HITS
 
+    @property
+    def velocity_off_mps(self) -> float:
+        return _VELOCITY_OFF_MPS if self.hits >= _FEW_HITS else math.inf
+
     def as_obstacle(self) -> MovingObstacle:
         x, y = self.xy.tolist()
         vx, vy = self.velocity.tolist()
-        return MovingObstacle(self.number, (x, y), (vx, vy), self.radius_m, self.stamp_s)
+        return MovingObstacle(
+            self.number, (x, y), (vx, vy), self.radius_m, self.stamp_s, self.velocity_off_mps
+        )
 
 
 class MovingThings:
@@ -135,6 +149,11 @@ class MovingThings:
                 new |= old.sees_through(sight.points)
         return new
 
+    def _stands_beside_somebody(self, place: NDArray[np.float64], stamp_s: float) -> bool:
+        return any(
+            thing.is_sure and math.dist(thing.predicted(stamp_s), place) < _BESIDE_M for thing in self._things
+        )
+
     def _follow(
         self,
         groups: list[NDArray[np.int64]],
@@ -169,6 +188,8 @@ class MovingThings:
                         grid,
                     )
                 )
+                if self._stands_beside_somebody(centre, stamp_s):
+                    self._things[-1].come_apart()
         for thing in left:
             _hold(thing, sight)
         self._things = [

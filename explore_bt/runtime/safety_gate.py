@@ -46,8 +46,8 @@ MOST_BEND = 4.0
 """1/m: a robot that bends more sharply is turning on the spot."""
 WALKING_MPS = 1.6
 """How fast a moving thing may come, from any side: a brisk walk."""
-STARTING_MPS2, VELOCITY_OFF_MPS = 2.5, 0.5
-"""How quickly it may start, stop or turn, and how wrong the velocity it is followed with may be."""
+STARTING_MPS2 = 2.5
+"""How quickly it may start, stop or turn."""
 AT_REST_MPS = 0.045
 """Below this the robot counts as standing: what walks into it then was not run into."""
 MOVING_MARGIN_M = 0.05
@@ -104,11 +104,11 @@ class SafetyGate:
         """
         points = surroundings.points
         self._around = surroundings
-        is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
         for thing in surroundings.moving:  # it is kept clear of by itself, and will not be there for ever
-            is_near &= np.hypot(*(points - thing.xy).T) > thing.radius_m + BESIDE_M
+            points = points[np.hypot(*(points - thing.xy).T) > thing.radius_m + BESIDE_M]
+        is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
         self._scans.append(np.ascontiguousarray(points[is_near]))
-        self._window.cut(surroundings.grid, near, points)
+        self._window.cut(surroundings.grid, near, points)  # the map answers for the wall beside whoever moves
         self._from_moving = _walking_from_moving(surroundings, near)
         self._from_hidden = _walking_from_hidden(surroundings, near)
 
@@ -188,9 +188,12 @@ class SafetyGate:
         self, places: NDArray[np.float64], times_s: NDArray[np.float64], around: Surroundings
     ) -> NDArray[np.float64]:
         walkers = np.array(
-            [(*thing.xy, *thing.velocity_mps, thing.radius_m, thing.stamp_s) for thing in around.moving]
+            [
+                (*thing.xy, *thing.velocity_mps, thing.radius_m, thing.stamp_s, thing.velocity_off_mps)
+                for thing in around.moving
+            ]
         )
-        spare_m = spare_of_walkers_m(places, times_s, walkers, WALKING_MPS, STARTING_MPS2, VELOCITY_OFF_MPS)
+        spare_m = spare_of_walkers_m(places, times_s, walkers, WALKING_MPS, STARTING_MPS2)
         return spare_m - self._radius_m
 
     def _fault_by_hidden(self, way: WayToRest, now_s: float, around: Surroundings) -> str:

@@ -85,7 +85,6 @@ def spare_of_walkers_m(
     walkers: NDArray[np.float64],
     speed: float,
     acceleration: float,
-    off: float,
 ) -> NDArray[np.float64]:
     """How far from all of these people places are sure to be at their times, in the open.
 
@@ -95,10 +94,10 @@ def spare_of_walkers_m(
     Args:
         places: (N, 2) metres, ``map`` frame.
         times_s: (N,) seconds, on the clock of the stamps.
-        walkers: (K, 6) x, y, vx, vy, radius, stamp; metres and seconds, ``map`` frame.
+        walkers: (K, 7) x, y, vx, vy, radius, stamp, and by how much the velocity may be wrong; metres and
+            seconds, ``map`` frame.
         speed: m/s.
         acceleration: m/s².
-        off: m/s by which velocities may be wrong.
 
     Returns:
         (N,) metres to the nearest edge of where one of them can be; below 0: they can be there.
@@ -106,12 +105,14 @@ def spare_of_walkers_m(
     out = np.full(places.shape[0], np.inf)
     for i in range(places.shape[0]):
         for k in range(walkers.shape[0]):
-            x, y, vx, vy, radius, stamp = walkers[k]
+            x, y, vx, vy, radius, stamp, off = walkers[k]
             t = max(times_s[i] - stamp, 0.0)
             dx, dy = places[i, 0] - x, places[i, 1] - y
-            by_speed = math.hypot(dx, dy) - speed * t
-            by_inertia = math.hypot(dx - vx * t, dy - vy * t) - (off + 0.5 * acceleration * t) * t
-            out[i] = min(out[i], max(by_speed, by_inertia) - radius)
+            away = math.hypot(dx, dy) - speed * t
+            if math.isfinite(off):
+                by_inertia = math.hypot(dx - vx * t, dy - vy * t) - (off + 0.5 * acceleration * t) * t
+                away = max(away, by_inertia)
+            out[i] = min(out[i], away - radius)
     return out
 
 

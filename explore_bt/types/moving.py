@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from explore_bt.types.pose import Pose2
@@ -19,6 +20,7 @@ class MovingObstacle:
         velocity_mps: along x and y; zero while it pauses.
         radius_m: all that was seen of it lies within this distance of the centre.
         stamp_s: when it was seen last; it may have moved on since.
+        velocity_off_mps: by so much its velocity may be wrong.
     """
 
     number: int
@@ -26,6 +28,7 @@ class MovingObstacle:
     velocity_mps: tuple[float, float]
     radius_m: float
     stamp_s: float
+    velocity_off_mps: float = math.inf
 
     def at(self, time_s: float) -> tuple[float, float]:
         """Where it is at that time if it goes on as it does, metres."""

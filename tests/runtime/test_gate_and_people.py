@@ -7,13 +7,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from explore_bt.interfaces import HeldBy, Surroundings
-from explore_bt.runtime.safety_gate import AT_REST_MPS, STARTING_MPS2, VELOCITY_OFF_MPS, SafetyGate
+from explore_bt.runtime.safety_gate import AT_REST_MPS, STARTING_MPS2, SafetyGate
 from explore_bt.testing.fake_robot import open_floor
-from explore_bt.types import MotionState, MovingObstacle, Pose2, Twist2
+from explore_bt.types import FREE, OCCUPIED, MotionState, MovingObstacle, OccupancyGrid, Pose2, Twist2
 
 from .conftest import DT, LIMITS, towards
 
 RADIUS, BODY = 0.25, 0.25
+VELOCITY_OFF_MPS = 0.5
 SCAN_EVERY = 2
 FLOOR = open_floor(30.0, 0.1)
 
@@ -35,7 +36,7 @@ class Chase:
     def step(self, wanted: Twist2) -> None:
         if self.steps % SCAN_EVERY == 0:
             moving = tuple(
-                MovingObstacle(k, (x, y), (vx, vy), BODY, self.time_s)
+                MovingObstacle(k, (x, y), (vx, vy), BODY, self.time_s, VELOCITY_OFF_MPS)
                 for k, (x, y, vx, vy) in enumerate(np.hstack([self.people, self._told()]).tolist())
             )
             self.gate.see(Surroundings(self.time_s, np.empty((0, 2)), FLOOR, moving), self.pose)
@@ -175,3 +176,18 @@ def test_who_is_told_of_is_named_as_the_reason() -> None:
         reasons.add(chase.held_by)
     assert reasons == {HeldBy.NOTHING, HeldBy.SOMEONE}
     assert chase.pose.x < 0.5
+
+
+def test_a_wall_beside_someone_is_still_a_wall() -> None:
+    """Their returns do not vote, and some of the wall's with them: then the map has to answer for it."""
+    cells = np.full((100, 100), FREE, dtype=np.int8)
+    cells[:, 58:] = OCCUPIED
+    walled = OccupancyGrid(cells, 0.05, (-2.5, -2.5))
+    wall = np.column_stack((np.full(50, 0.4), np.linspace(-2.0, 2.0, 50)))
+    someone = MovingObstacle(0, (0.85, 0.3), (0.0, 0.0), 0.45, 0.0)
+    gate, motion, x = SafetyGate(RADIUS, LIMITS), MotionState(), -0.1
+    for _ in range(300):
+        gate.see(Surroundings(0.0, wall, walled, (someone,)), Pose2(x, 0.0, 0.0))
+        motion = gate.decide(towards(Twist2(0.04, 0.0), motion), Pose2(x, 0.0, 0.0), motion, DT, 0.0).motion
+        x += motion.twist.linear_mps * DT
+    assert 0.0 < x <= 0.4 - RADIUS

@@ -80,12 +80,12 @@ def test_nobody_with_such_legs_is_where_it_says_that_nobody_can_be(state, off, p
     """Somebody accelerates at random, told with a wrong velocity; the place is one they come to."""
     place, velocity = np.array(state[:2]), np.clip(np.array(state[2:]), -1.1, 1.1)
     told = velocity + off * np.array([math.cos(wrong_way), math.sin(wrong_way)])
-    walker = np.array([[*place, *told, 0.25, 10.0]])
+    walker = np.array([[*place, *told, 0.25, 10.0, off]])
     dt_s = 0.05
     for k, (course, push) in enumerate(pushes, 1):
         pushed = velocity + push * dt_s * np.array([math.cos(course), math.sin(course)])
         faster = math.hypot(*pushed) > 1.6
         place = place + dt_s * (velocity if faster else 0.5 * (velocity + pushed))
         velocity = velocity if faster else pushed
-        (spare,) = spare_of_walkers_m(place[None], np.array([10.0 + k * dt_s]), walker, 1.6, 2.5, off)
+        (spare,) = spare_of_walkers_m(place[None], np.array([10.0 + k * dt_s]), walker, 1.6, 2.5)
         assert spare <= -0.25 + 1e-9
