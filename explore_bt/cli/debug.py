@@ -131,8 +131,8 @@ def _on_page(
     desk = Desk(live.feed, Controls(session))
     with PageServer(desk, host=page.host, port=page.port, token=page.token, share=PAGE_SHARE) as server:
         show_page(server, open_it=page.open_it)
-        typer.echo(f"{mission.path}, seed {seed}: {GETTING_READY}")
         with stopping_by_signal(stop):
+            typer.echo(f"{mission.path}, seed {seed}: {GETTING_READY}")
             result = drive(mission, registry, folder, seed, sinks, stop, session)
         show_result(result, folder)
         if "SIGTERM" not in stop.reason:

@@ -27,7 +27,12 @@ from tests.report.flat_drive import make_drive
 def started(*words: str, folder: Path) -> Iterator[subprocess.Popen[str]]:
     command = [sys.executable, "-u", "-c", "from explore_bt.cli import main; main()", *words]
     with subprocess.Popen(
-        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        command,
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored below a shell's &
     ) as process:
         try:
             yield process

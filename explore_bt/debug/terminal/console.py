@@ -118,6 +118,8 @@ class Console:
                     raise
                 except KeyboardInterrupt:  # whatever was being done or typed
                     self._interrupted()
+                    if not self._session.state().paused:  # the run had just been let go
+                        self._wait()
         except Terminated:
             pass
         finally:

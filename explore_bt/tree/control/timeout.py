@@ -35,13 +35,13 @@ class Timeout(Decorator):
         self._begun_s = self._now_s()
 
     def memory(self) -> Mapping[str, object]:
-        """When the time is up: mission time goes on where it stood."""
-        return {"deadline_s": self._deadline_s}
+        """When the time began: mission time goes on where it stood."""
+        return {"begun_s": self._begun_s}
 
     def restore(self, memory: Mapping[str, object]) -> None:
-        """Keep the deadline."""
+        """Let no more time be left than there was."""
         super().restore(memory)
-        self._deadline_s = cast(float, memory["deadline_s"])
+        self._begun_s = cast(float, memory["begun_s"])
 
     def work(self) -> Work:
         """Tick the child while there is time."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -35,6 +36,8 @@ require("foxglove", "foxglove")
 
 __all__ = ["FoxgloveLive", "FoxgloveLiveOptions", "explore_bt_register"]
 
+_LAST_WORDS_S = 0.3
+"""Until clients have the result: the server hangs up with what it has not sent yet."""
 _NOT_SHOWN = "measured"  # what SLAM is given: megabytes for nobody's eye
 
 
@@ -124,6 +127,7 @@ class FoxgloveLive(Sink):
             track.close(self._time_ns)
         if result is not None:
             self._send("/result", self._time_ns, result_message(result))
+            time.sleep(_LAST_WORDS_S)
         for channel in self._channels.values():
             channel.close()
         server.stop()
