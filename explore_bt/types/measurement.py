@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -55,6 +55,13 @@ class Scan2D:
         angles = self.angles_rad[hit]
         in_sensor = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
         return self.T_base_sensor.apply(in_sensor)
+
+    def straightened(self, turn_rate_rps: float) -> Scan2D:
+        """As the sweep would look from where the sensor stood at ``stamp_s``, if it turned evenly in place.
+
+        What it drove meanwhile stays in: centimetres, where a turn moves far returns by decimetres.
+        """
+        return replace(self, angles_rad=self.angles_rad + turn_rate_rps * self.times_s)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
