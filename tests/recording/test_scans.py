@@ -83,7 +83,7 @@ def test_a_scan_is_recorded_from_where_the_robot_was_when_it_ended(recorded_driv
     seen, robot = Pose2(1.0, 2.0, 0.5), tick.robots[0]
     for given, expected in ((seen, seen), (None, robot.estimate.T_map_base)):
         ticks = [replace(tick, robots=(replace(robot, scan_pose=given),))]
-        drive = replace(recorded_drive, ticks=ticks).in_folder(tmp_path / f"{given is None}")
+        drive = replace(recorded_drive, ticks=ticks).in_folder(tmp_path)
         drive.show_to(McapRecorder(McapRecorder.Options()))
         (message,) = read_recording(drive.run.folder / "recording.mcap").messages("/robot/scan")
         place = message.value["pose"]["position"]
