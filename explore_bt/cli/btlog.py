@@ -13,7 +13,7 @@ from explore_bt.files import write_whole
 if TYPE_CHECKING:
     from explore_bt.recording import Recording
 
-__all__ = ["BtlogOption", "write_btlogs"]
+__all__ = ["BtlogOption", "require_btlog", "write_btlogs"]
 
 BtlogOption = Annotated[
     Path | None,
@@ -21,20 +21,29 @@ BtlogOption = Annotated[
 ]
 
 
-def write_btlogs(recording: Recording, out: Path) -> list[Path]:
-    """Write ``out``, or one file for each of several robots: ``run-ann.btlog``, ``run-bob.btlog``.
+def require_btlog(out: Path) -> None:
+    """What can be found out before a recording is read.
 
     Raises:
         UserError: a name that Groot2 would not open, or no such folder.
     """
-    from explore_bt.recording import btlog
-
     if out.suffix != ".btlog":
         raise UserError(
             f"{out} does not end with .btlog, as Groot2 wants it; write {out.with_suffix('.btlog')}"
         )
     if not out.parent.is_dir():
         raise UserError(f"there is no folder {out.parent} to write {out.name} into; make it first")
+
+
+def write_btlogs(recording: Recording, out: Path) -> list[Path]:
+    """Write ``out``, or one file for each of several robots: ``run-ann.btlog``, ``run-bob.btlog``.
+
+    Raises:
+        UserError: see ``require_btlog``.
+    """
+    from explore_bt.recording import btlog
+
+    require_btlog(out)
     if len(recording.robots) == 1:
         return [write_whole(out, btlog(recording))]
     return [

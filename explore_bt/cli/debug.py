@@ -26,7 +26,7 @@ from explore_bt.cli.driving import (
 )
 from explore_bt.cli.groot import GrootHostOption, GrootOption, GrootPortOption, groot_sinks
 from explore_bt.cli.guard import guarded
-from explore_bt.cli.loading import MissionArgument, SetOption, load_checked
+from explore_bt.cli.loading import MissionArgument, MockOption, SetOption, load_checked
 from explore_bt.cli.page_options import (
     HostOption,
     OpenOption,
@@ -75,6 +75,7 @@ def debug(
     groot: GrootOption = False,
     groot_port: GrootPortOption = 1667,
     groot_host: GrootHostOption = "127.0.0.1",
+    mock: MockOption = None,
     verbose: VerboseOption = False,
 ) -> None:
     """Run a mission under a debugger: step, break, look back.
@@ -83,9 +84,9 @@ def debug(
     mission is over ends the page. In the terminal, type help; Ctrl-C pauses, a second one stops the
     robot safely. Results and exit codes are those of explore-bt run.
     """
-    checked, registry = load_checked(mission, set_)
+    checked, registry = load_checked(mission, set_, mock)
     folder = new_run_folder(out, checked.path.stem)
-    session = new_session(checked, registry, set_ or (), paused=not run_on)
+    session = new_session(checked, registry, set_ or (), mock, paused=not run_on)
     sinks = [
         *make_sinks(registry, [*ALWAYS, *(sink or ())]),
         *groot_sinks(groot, checked, session, groot_host, groot_port),
@@ -102,14 +103,15 @@ def debug(
 
 
 def new_session(
-    mission: Mission, registry: Registry, settings: Sequence[str], *, paused: bool = True
+    mission: Mission, registry: Registry, settings: Sequence[str], mocks: Path | None, *, paused: bool = True
 ) -> DebugSession:
     """A session that stands still before the first tick, if ``paused``, and can change parameters."""
     from explore_bt.debug import DebugSession, Params
-    from explore_bt.mission import load_mission
+    from explore_bt.mission import load_mission, with_mocks
 
     def load(again: Sequence[str]) -> Mission:
-        return load_mission(mission.path, registry, again)
+        read = load_mission(mission.path, registry, again)
+        return read if mocks is None else with_mocks(read, mocks)
 
     return DebugSession(Params(mission, load, settings), paused=paused)
 

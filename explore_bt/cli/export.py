@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from explore_bt.cli.btlog import BtlogOption, require_btlog, write_btlogs
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.human import count, duration
 from explore_bt.cli.recordings import open_recording
@@ -36,20 +37,28 @@ def export(
     rate: Annotated[
         float, typer.Option(min=1, max=60, metavar="HZ", help="Of the video: frames a second.")
     ] = 10.0,
+    btlog: BtlogOption = None,
 ) -> None:
     """Turn a recording into files for other programs.
 
     Tables: poses, truth, states, events, gate, transitions of nodes, numbers of the blackboard, counts of
     nodes. A recording that was cut off is exported up to its end.
     """
-    if csv is None and parquet is None and video is None:
-        raise UserError("nothing to export to; name --csv DIR, --parquet DIR or --video FILE.mp4")
+    if csv is None and parquet is None and video is None and btlog is None:
+        raise UserError(
+            "nothing to export to; name --csv DIR, --parquet DIR, --video FILE.mp4 or --btlog FILE.btlog"
+        )
     _require(csv, parquet, video)
+    if btlog is not None:
+        require_btlog(btlog)
     recording = open_recording(run)
     if recording.damage:
         typer.echo(f"{recording.path}: {recording.damage}", err=True)
     if csv is not None or parquet is not None:
         _export_tables(recording, csv, parquet)
+    if btlog is not None:
+        for path in write_btlogs(recording, btlog):
+            typer.echo(path)
     if video is not None:
         _export_video(recording, video, rate, speed)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 
 from explore_bt.interfaces import PluginOptions
 from explore_bt.mission import Condition, Mission, NodeSpec, RobotSpec
+from explore_bt.tree import MockedLeaf
 
 __all__ = ["Use", "uses"]
 
@@ -105,12 +106,18 @@ def _shape(node: NodeSpec) -> tuple[object, ...]:
     return (
         node.type,
         node.path,
-        node.leaf,
+        _played_by(node),
         modifiers.timeout_s is None,
         modifiers.retry is None,
         (condition.key, condition.negated) if isinstance(condition, Condition) else None,
         len(_below(node)),
     )
+
+
+def _played_by(node: NodeSpec) -> object:
+    """The leaf; for a mocked one, whose class is made anew with every reading, its script."""
+    leaf = node.leaf
+    return leaf.script if leaf is not None and issubclass(leaf, MockedLeaf) else leaf
 
 
 def _below(node: NodeSpec) -> list[NodeSpec]:

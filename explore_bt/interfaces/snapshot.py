@@ -19,6 +19,7 @@ from explore_bt.types import (
     Pose2,
     Scan2D,
     Score,
+    Twist2,
 )
 
 __all__ = ["Event", "NodeInfo", "NodeState", "PortInfo", "RobotSnapshot", "RunInfo", "TickSnapshot"]
@@ -106,6 +107,8 @@ class RobotSnapshot:
         blackboard: key -> value after this tick.
         gate_reason: empty while commands pass; else why the safety gate brakes.
         held_by: what kind of reason that is.
+        scan_pose: where the robot was at the scan's stamp, ``map`` frame; None where nobody knows.
+        scan_twist: how it moved then.
         true_pose: where the driver knows it.
         measured: what SLAM was given since the tick before, in this order.
         moving: what moves around the robot, as the newest scan tells.
@@ -124,6 +127,8 @@ class RobotSnapshot:
     nodes: tuple[NodeState, ...]
     blackboard: Mapping[str, object]
     score: Score
+    scan_pose: Pose2 | None = None
+    scan_twist: Twist2 = Twist2()
     true_pose: Pose2 | None = None
     measured: tuple[Measurement, ...] = ()
     held_by: HeldBy = HeldBy.NOTHING
@@ -131,6 +136,11 @@ class RobotSnapshot:
     moving: tuple[MovingObstacle, ...] = ()
     budgets: tuple[Budget, ...] = ()
     charge: float | None = None
+
+    @property
+    def T_map_scan(self) -> Pose2:
+        """Of the robot, not of the lidar on it, when the newest scan ended: to draw the scan from."""
+        return self.estimate.T_map_base if self.scan_pose is None else self.scan_pose
 
 
 @dataclass(frozen=True, slots=True, eq=False)

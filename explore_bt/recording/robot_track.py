@@ -230,7 +230,8 @@ class RobotTrack:
             self._scan = robot.scan
             self._scan_due.passed(time_ns)
             at_ns = stamp_ns(robot.scan.stamp_s) if math.isfinite(robot.scan.stamp_s) else time_ns
-            text = scan_message(max(at_ns, 0), robot.scan, robot.estimate.T_map_base)
+            straight = robot.scan.straightened(robot.scan_twist)
+            text = scan_message(max(at_ns, 0), straight, robot.T_map_scan)
             self._write(self._topic + "scan", time_ns, text)
         self._grid = robot.grid
         if self._map_due.ready(time_ns):

@@ -12,13 +12,7 @@ from numpy.typing import NDArray
 from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
 from explore_bt.exploration import warm_up
-from explore_bt.interfaces import (
-    Event,
-    MapMemory,
-    MapView,
-    RobotContext,
-    RobotSnapshot,
-)
+from explore_bt.interfaces import Event, MapMemory, MapView, RobotContext, RobotSnapshot
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.fault_log import FaultLog
@@ -50,6 +44,7 @@ from explore_bt.types import (
     Pose2,
     Scan2D,
     Trajectory,
+    Twist2,
 )
 
 __all__ = ["Robot"]
@@ -86,6 +81,8 @@ class Robot:
         self._counts = TickCounts(self.tree.nodes)
         self._sketch = Sketch()
         self._scan: Scan2D | None = None
+        self._scan_pose: Pose2 | None = None
+        self._scan_twist = Twist2()
         self._measured: list[Measurement] = []
         self._view: MapView | None = None
         self._map_memory = MapMemory()
@@ -308,7 +305,7 @@ class Robot:
         self._keeping.restore(cut.memory)
         for measurement in cut.measured:
             self._take(measurement)
-        self._measured, self._scan = [], None
+        self._measured, self._scan, self._scan_pose = [], None, None
         self.slam.pick_up()
         if cut.score is not None:
             self.scores.catch_up(cut.score, cut.true_way)
@@ -323,6 +320,8 @@ class Robot:
             estimate=self.estimate(),
             grid=self.slam.grid(),
             scan=self._scan,
+            scan_pose=self._scan_pose,
+            scan_twist=self._scan_twist,
             path=self.pilot.path,
             motion=self.pilot.motion,
             gate_reason=self.pilot.gate_reason,
@@ -371,6 +370,7 @@ class Robot:
     def _show_gate(self) -> None:
         assert self._scan is not None
         estimate = self._estimate_of_scan(self._scan)
+        self._scan_pose, self._scan_twist = estimate.T_map_base, self.pilot.motion.twist
         if self.pilot.has_jumped(estimate):
             self._people.forget()
         around = self._people.around(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.types.pose import Pose2
+from explore_bt.types.pose import Pose2, Twist2
 
 __all__ = ["Battery", "Imu", "Measurement", "PointCloud", "RgbdFrame", "Scan2D", "WheelOdometry"]
 
@@ -55,6 +55,19 @@ class Scan2D:
         angles = self.angles_rad[hit]
         in_sensor = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
         return self.T_base_sensor.apply(in_sensor)
+
+    def straightened(self, twist: Twist2) -> Scan2D:
+        """As the sweep would look from where the robot stood at ``stamp_s``: to be drawn, not to be mapped.
+
+        Beams keep even steps: each is turned, and made longer or shorter by what was driven along it; what
+        was driven across it, at most some centimetres, stays in.
+
+        Args:
+            twist: of the robot during the sweep.
+        """
+        angles = self.angles_rad + twist.angular_rps * self.times_s
+        driven = twist.linear_mps * self.times_s * np.cos(angles + self.T_base_sensor.yaw_rad)
+        return replace(self, angles_rad=angles, ranges_m=(self.ranges_m + driven).astype(np.float32))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -140,6 +140,41 @@ def test_parameters_are_listed_and_changed():
     assert "for example: param stride=1.2 m" in said[4][0]
 
 
+MOCKS = """
+format: explore-bt-mocks/1
+mocks:
+  - leaf: "*/drive_to"
+    ticks: [running*3, success]
+    say: played
+"""
+
+
+def test_a_dry_run_is_debugged_like_any_other(folder):
+    (folder / "mocks.yaml").write_text(MOCKS)
+    shown = debug(
+        "param first=0.9 s",
+        "break drive_to success",
+        "c",
+        "tree drive_to",
+        "c",
+        "q",
+        arguments=("--mock", "mocks.yaml"),
+    )
+    assert shown.exit_code == 0, shown.output
+    said = answers(shown)
+    assert said[1] == ["first = 0.9 s, was 0.5 s: duration of main/first"]
+    assert any("played" in line for line in said[4])
+    assert json.loads((folder / "out" / "result.json").read_text())["mocked"] == ["main/drive_to"]
+
+
+def test_a_mock_file_with_a_fault_is_told_before_anything_is_written(folder):
+    (folder / "mocks.yaml").write_text(MOCKS.replace("drive_to", "drive_too"))
+    shown = debug(arguments=("--mock", "mocks.yaml"))
+    assert shown.exit_code == 2
+    assert "mocks.yaml:4:" in shown.stderr
+    assert not (folder / "out").exists()
+
+
 def test_what_is_mistyped_gets_a_hint_and_the_next_line_is_read():
     shown = debug("stpe", "step 3 tiks", "break", "break x y", "back far", "delete", "robot bob", "de 7", "q")
     said = answers(shown)

@@ -22,11 +22,12 @@ export function drawBars(page, state, time) {
   if (!figures) return;
   const told = [["mapped", figures.coverage === null ? "–" : percent(figures.coverage)], ["driven", metres(figures.distance_m)], ["speed", speed(figures.speed_mps)]];
   if (figures.health !== "ok") told.push(["SLAM", figures.health]);
-  if (state.newest.gate?.braking) told.push(["gate", "brakes"]);
+  if (figures.charge !== null && figures.charge !== undefined) told.push(["battery", percent(figures.charge)]);
+  if (state.newest.gate?.braking) told.push(["held by", state.newest.gate.held_by ?? "the gate"]);
   const key = told.join();
   if (byId("figures").dataset.key === key) return;
   byId("figures").dataset.key = key;
-  byId("figures").replaceChildren(...told.map(([name, value]) => make("div", { class: name === "SLAM" || name === "gate" ? "bad" : "" }, make("dt", {}, name), make("dd", {}, value))));
+  byId("figures").replaceChildren(...told.map(([name, value]) => make("div", { class: name === "SLAM" || name === "held by" || (name === "battery" && figures.charge < 0.2) ? "bad" : "" }, make("dt", {}, name), make("dd", {}, value))));
 }
 
 function setSign(button, name, words) {

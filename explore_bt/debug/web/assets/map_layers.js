@@ -4,10 +4,11 @@ import { flat } from "./run_state.js";
 
 export const LAYERS = {
   scan: "Scan", driven: "Driven path", path: "Planned path", waypoints: "Waypoints", sectors: "Free sectors",
-  "half-planes": "Half-planes", frontiers: "Frontiers", views: "Views", robots: "Other robots", truth: "True pose",
+  "half-planes": "Half-planes", frontiers: "Frontiers", views: "Views", people: "People", robots: "Other robots", truth: "True pose",
 };
 
 const MOST_POSES = 4000;
+const HALF_M = 1.2;  // of a half-plane's line, to either side
 
 /** Draws what is switched on, the farthest back first. */
 export function drawLayers(map) {
@@ -22,6 +23,7 @@ export function drawLayers(map) {
   if (layers.has("views")) (drawing.views ?? []).forEach((each) => view(map, each));
   if (layers.has("path")) planned(map, picked.state.newest.path);
   if (layers.has("waypoints")) waypoints(map, picked.state);
+  if (layers.has("people")) (picked.state.newest.moving?.things ?? []).forEach((each) => person(map, each));
   if (layers.has("truth")) shown.forEach((robot) => body(map, robot, flat(robot.state.newest.truth?.pose), true));
   shown.forEach((robot) => body(map, robot, flat(robot.state.newest.pose?.pose), false));
 }
@@ -121,42 +123,94 @@ function sector({ pen, at, scale, palette, spots }, each) {
   pen.setLineDash([]);
   pen.globalAlpha = 1;
   const middle = (each.from_rad + each.to_rad) / 2;
-  spots.push({ x: x + 0.7 * radius * Math.cos(middle), y: y - 0.7 * radius * Math.sin(middle), words: `${each.state} sector: ${each.reason ?? ""}` });
+  spots.push({ x: x + 0.7 * radius * Math.cos(middle), y: y - 0.7 * radius * Math.sin(middle), words: judged(each, "sector"), covers: (px, py) => within(each, radius, px - x, y - py) });
 }
 
-function halfPlane({ pen, at, palette }, { x, y, normal_x: nx, normal_y: ny }) {
-  const size = Math.hypot(nx, ny) || 1, ux = nx / size, uy = ny / size, half = 1.2;
-  pen.strokeStyle = palette.soft;
-  pen.lineWidth = 1.2;
+/** Whether a place, in pixels from the robot and upwards, lies in a sector. */
+function within({ from_rad: from, to_rad: to }, radius, dx, dy) {
+  const turn = 2 * Math.PI, beyond = ((Math.atan2(dy, dx) - from) % turn + turn) % turn;
+  return Math.hypot(dx, dy) < radius && beyond <= to - from;
+}
+
+/** The line, hatched on the side that lies behind. */
+function halfPlane({ pen, at, palette, spots }, { x, y, normal_x: nx, normal_y: ny }) {
+  const along = (far, back) => at(x - far * ny - back * nx, y + far * nx - back * ny);
+  pen.strokeStyle = palette.plane;
+  pen.lineWidth = 1.6;
   pen.beginPath();
-  pen.moveTo(...at(x - half * uy, y + half * ux));
-  pen.lineTo(...at(x + half * uy, y - half * ux));
-  pen.moveTo(...at(x, y));
-  pen.lineTo(...at(x + 0.25 * ux, y + 0.25 * uy));
+  pen.moveTo(...along(-HALF_M, 0));
+  pen.lineTo(...along(HALF_M, 0));
   pen.stroke();
+  pen.lineWidth = 1;
+  pen.beginPath();
+  for (let far = -HALF_M; far <= HALF_M + 1e-6; far += HALF_M / 8) {
+    pen.moveTo(...along(far, 0));
+    pen.lineTo(...along(far - 0.08, 0.11));
+  }
+  pen.stroke();
+  for (const far of [-1, -0.5, 0.5, 1]) {
+    const [sx, sy] = along(far * HALF_M, 0);
+    spots.push({ x: sx, y: sy, words: "half-plane: what lies on the hatched side is behind" });
+  }
 }
 
 function frontier({ pen, at, palette, spots }, each) {
-  const [x, y] = at(each.x, each.y);
-  pen.fillStyle = pen.strokeStyle = palette[each.state] ?? palette.open;
-  pen.lineWidth = 1.5;
+  const [x, y] = at(each.x, each.y), size = each.state === "taken" ? 7 : 5;
   pen.beginPath();
-  pen.moveTo(x, y - 5); pen.lineTo(x + 5, y); pen.lineTo(x, y + 5); pen.lineTo(x - 5, y);
+  pen.moveTo(x, y - size); pen.lineTo(x + size, y); pen.lineTo(x, y + size); pen.lineTo(x - size, y);
   pen.closePath();
-  if (each.state === "rejected") pen.stroke(); else pen.fill();
-  spots.push({ x, y, words: `${each.state} frontier${each.size_m ? `, ${each.size_m.toFixed(1)} m` : ""}: ${each.reason ?? ""}` });
+  pen.fillStyle = each.state === "rejected" ? palette.panel : palette[each.state] ?? palette.open;
+  pen.strokeStyle = each.state === "rejected" ? palette.rejected : palette.panel;
+  pen.lineWidth = each.state === "rejected" ? 1.6 : 1;
+  pen.fill();
+  pen.stroke();
+  spots.push({ x, y, words: judged(each, `frontier${each.size_m ? `, ${each.size_m.toFixed(1)} m` : ""}`) });
 }
 
+/** A place with what can be seen from it: a dot, and a wedge that opens that way. */
 function view({ pen, at, palette, spots }, each) {
-  const [x, y] = at(each.x, each.y), yaw = each.yaw_rad ?? 0;
-  pen.strokeStyle = palette[each.state] ?? palette.open;
-  pen.lineWidth = 1.4;
+  if (each.x === null || each.y === null) return;
+  const [x, y] = at(each.x, each.y), yaw = each.yaw_rad ?? 0, far = each.state === "taken" ? 20 : 14;
+  pen.fillStyle = pen.strokeStyle = palette[each.state] ?? palette.open;
   pen.beginPath();
-  pen.moveTo(x + 10 * Math.cos(yaw - 0.5), y - 10 * Math.sin(yaw - 0.5));
-  pen.lineTo(x, y);
-  pen.lineTo(x + 10 * Math.cos(yaw + 0.5), y - 10 * Math.sin(yaw + 0.5));
+  pen.moveTo(x, y);
+  pen.arc(x, y, far, -yaw - 0.5, -yaw + 0.5);
+  pen.closePath();
+  pen.globalAlpha = 0.3;
+  pen.fill();
+  pen.globalAlpha = 1;
+  pen.lineWidth = each.state === "taken" ? 1.6 : 1;
+  if (each.state === "taken") pen.stroke();
+  pen.beginPath();
+  pen.arc(x, y, 3, 0, 2 * Math.PI);
+  if (each.state === "rejected") pen.stroke(); else pen.fill();
+  spots.push({ x, y, words: judged(each, `view${each.gain_m2 ? `, ${each.gain_m2.toFixed(1)} m² to see` : ""}`) });
+}
+
+/** What was decided about a mark, and why. */
+function judged({ state, reason }, what) { return `${state} ${what}${reason ? `: ${reason}` : ""}`; }
+
+/** A disc where it was seen, an arrow to where it is in a second if it goes on so. */
+function person({ pen, at, scale, time, palette, spots }, each) {
+  const [x, y] = at(each.x, each.y), [tx, ty] = at(each.x + each.vx_mps, each.y + each.vy_mps), radius = Math.max(each.radius_m * scale, 5);
+  pen.fillStyle = pen.strokeStyle = palette.person;
+  pen.lineWidth = 2;
+  pen.globalAlpha = 0.3;
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  pen.fill();
+  pen.globalAlpha = 1;
   pen.stroke();
-  spots.push({ x, y, words: `${each.state} view${each.gain_m2 ? `, ${each.gain_m2.toFixed(1)} m² to see` : ""}` });
+  const speed = Math.hypot(each.vx_mps, each.vy_mps), ago = time - each.seen_s;
+  if (speed > 0.05) {
+    const way = Math.atan2(ty - y, tx - x);
+    pen.beginPath();
+    pen.moveTo(x, y); pen.lineTo(tx, ty);
+    pen.moveTo(tx - 7 * Math.cos(way - 0.5), ty - 7 * Math.sin(way - 0.5)); pen.lineTo(tx, ty);
+    pen.lineTo(tx - 7 * Math.cos(way + 0.5), ty - 7 * Math.sin(way + 0.5));
+    pen.stroke();
+  }
+  spots.push({ x, y, words: `somebody, ${speed > 0.05 ? `${speed.toFixed(1)} m/s` : "standing"}${ago > 0.5 ? `, seen ${ago.toFixed(1)} s ago` : ""}`, covers: (px, py) => Math.hypot(px - x, py - y) < radius });
 }
 
 function body({ pen, at, scale, palette, spots }, robot, pose, ghost) {

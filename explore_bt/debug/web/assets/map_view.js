@@ -5,6 +5,8 @@ import { after } from "./story.js";
 import { flat } from "./run_state.js";
 import { drawLayers } from "./map_layers.js";
 
+const REACH = 12, MOST_WORDS = 4;
+
 /** Decodes a Foxglove grid once. */
 const grids = new WeakMap();
 export function gridOf(message) {
@@ -20,7 +22,7 @@ export function gridOf(message) {
 
 /** Draws everything in `map` frame; metres to pixels by centre and scale. */
 export class MapView {
-  layers = new Set(["scan", "driven", "path", "waypoints", "sectors", "half-planes", "frontiers", "views", "robots"]);
+  layers = new Set(["scan", "driven", "path", "waypoints", "sectors", "half-planes", "frontiers", "views", "people", "robots"]);
   follow = false;
   spots = [];
 
@@ -67,6 +69,14 @@ export class MapView {
     this.draw();
   }
 
+  /** What is said of a place on the screen: the nearest marks first, then what lies under it. */
+  wordsAt(px, py) {
+    const far = (each) => Math.hypot(each.x - px, each.y - py);
+    const near = this.spots.filter((each) => far(each) < REACH).sort((a, b) => far(a) - far(b));
+    const under = this.spots.filter((each) => far(each) >= REACH && each.covers?.(px, py));
+    return [...new Set([...near, ...under].map((each) => each.words))].slice(0, MOST_WORDS);
+  }
+
   toMap(px, py) {
     const { x, y, scale } = this.#view;
     return [x + (px - this.#canvas.clientWidth / 2) / scale, y - (py - this.#canvas.clientHeight / 2) / scale];
@@ -89,7 +99,7 @@ export class MapView {
     if (grid) this.#drawGrid(pen, grid, picked.name);
     this.spots = [];
     drawLayers({
-      pen, scene, picked, palette: this.#palette, layers: this.layers, spots: this.spots, scale: this.#view.scale,
+      pen, scene, picked, palette: this.#palette, layers: this.layers, spots: this.spots, time: scene.time, scale: this.#view.scale,
       at: (x, y) => this.toScreen(x, y), until: (robot) => after(robot.story.poses.stamps, scene.time),
     });
     this.#drawScale(pen, height);
@@ -146,7 +156,7 @@ export class MapView {
 
   #readColours() {
     this.#palette = colours(
-      "unknown", "free", "wall", "soft", "ink", "panel", "scan", "planned", "waypoint", "taken", "rejected", "open", "failure",
+      "unknown", "free", "wall", "soft", "ink", "panel", "scan", "planned", "waypoint", "taken", "rejected", "open", "plane", "person", "failure",
       ...Array.from({ length: 6 }, (_, index) => `robot-${index}`),
     );
   }

@@ -297,13 +297,12 @@ class Page {
 
   #hover(here, spot) {
     byId("map-note").textContent = spot ? `x ${spot[0].toFixed(2)}  y ${spot[1].toFixed(2)} m` : "";
-    const near = here && this.map.spots.map((each) => [Math.hypot(each.x - here.x, each.y - here.y), each]).filter(([far]) => far < 14).sort((a, b) => a[0] - b[0])[0];
-    const hint = byId("map-hint");
-    hint.hidden = !near;
-    if (!near) return;
-    hint.textContent = near[1].words;
-    hint.style.left = `${Math.min(near[1].x + 12, byId("map").clientWidth - 240)}px`;
-    hint.style.top = `${near[1].y + 12}px`;
+    const words = here ? this.map.wordsAt(here.x, here.y) : [], hint = byId("map-hint");
+    hint.hidden = !words.length;
+    if (!words.length) return;
+    hint.textContent = words.join("\n");
+    hint.style.left = `${Math.min(here.x + 14, byId("map").clientWidth - 240)}px`;
+    hint.style.top = `${Math.min(here.y + 14, byId("map").clientHeight - hint.offsetHeight - 8)}px`;
   }
 
   // --- wiring -------------------------------------------------------------------------------------------
