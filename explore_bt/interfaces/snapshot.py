@@ -138,8 +138,8 @@ class RobotSnapshot:
     charge: float | None = None
 
     @property
-    def T_map_scan(self) -> Pose2:
-        """Of the robot, not of the lidar on it, when the newest scan ended: to draw the scan from."""
+    def seen_from(self) -> Pose2:
+        """The robot's pose, ``map`` frame, from which the newest scan is to be drawn."""
         return self.estimate.T_map_base if self.scan_pose is None else self.scan_pose
 
 

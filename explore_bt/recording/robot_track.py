@@ -231,7 +231,7 @@ class RobotTrack:
             self._scan_due.passed(time_ns)
             at_ns = stamp_ns(robot.scan.stamp_s) if math.isfinite(robot.scan.stamp_s) else time_ns
             straight = robot.scan.straightened(robot.scan_twist)
-            text = scan_message(max(at_ns, 0), straight, robot.T_map_scan)
+            text = scan_message(max(at_ns, 0), straight, robot.seen_from)
             self._write(self._topic + "scan", time_ns, text)
         self._grid = robot.grid
         if self._map_due.ready(time_ns):

@@ -20,22 +20,22 @@ from tests.groot.box import WORLD
 
 WIDTH_M, HEIGHT_M, WALL_M, NOISE_M = 6.0, 3.0, 0.1, 0.01
 
-TURNING = f"""
+TURNING = """
 format: explore-bt/1
 name: turning
 robots:
   robot:
-    driver: {{use: sim2d, world: box.yaml, radius: 0.2 m}}
-    slam: {{use: ground_truth}}
-    planner: {{use: grid_astar}}
-    controller: {{use: pursuit}}
-limits: {{time: 60 s}}
+    driver: {use: sim2d, world: box.yaml, radius: 0.2 m}
+    slam: {use: ground_truth}
+    planner: {use: grid_astar}
+    controller: {use: pursuit}
+limits: {time: 60 s}
 tree: main
 trees:
   main:
     sequence:
-      - turn: {{by: 180 deg}}
-      - turn: {{by: 180 deg}}
+      - turn: {by: 180 deg}
+      - turn: {by: 180 deg}
 """
 
 

@@ -58,7 +58,7 @@ class RerunRobot:
             self._grid = robot.grid
             self._log("map", _grid_map(robot.grid))
         if robot.scan is not None and self._is_due("scan", stamp_s, self._settings.scan_period):
-            points = robot.T_map_scan.apply(robot.scan.straightened(robot.scan_twist).points())
+            points = robot.seen_from.apply(robot.scan.straightened(robot.scan_twist).points())
             self._log("scan", rerun.Points3D(_flat(points), radii=0.02, colors=_SCAN))
         if robot.path is not self._path:
             self._path = robot.path

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,9 +12,11 @@ from websockets.sync.client import ClientConnection, connect
 
 from explore_bt.debug.web import Desk, PageServer, RunFeed
 from explore_bt.recording import McapRecorder, Recording, read_recording
+from tests.debug.web.seen import DESK, Seen
 from tests.report.flat_drive import Drive, make_drive
 
 PATIENCE_S = 60.0
+FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"]
 
 
 @pytest.fixture(scope="session")
@@ -66,3 +69,27 @@ def asking(server: PageServer, **headers: Any) -> Iterator[Asker]:
     options = {"origin": f"http://{url.netloc}", "compression": None, "max_size": None} | headers
     with connect(f"ws://{url.netloc}/socket{token}", **options) as socket:
         yield Asker(socket)
+
+
+@pytest.fixture(scope="package")
+def browser() -> Iterator[Any]:
+    playwright, chromium = pytest.importorskip("playwright.sync_api"), shutil.which("chromium")
+    if chromium is None:
+        pytest.skip("chromium is not installed")
+    with playwright.sync_playwright() as started:
+        browser = started.chromium.launch(executable_path=chromium, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def see(browser) -> Iterator[Any]:
+    opened: list[Seen] = []
+
+    def see(url: str, size: dict[str, int] = DESK, **options: Any) -> Seen:
+        opened.append(Seen(browser, url, size, **options))
+        return opened[-1]
+
+    yield see
+    for each in opened:
+        each.close()

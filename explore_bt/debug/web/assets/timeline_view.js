@@ -36,7 +36,8 @@ export class TimelineView {
     const drawn = this.#drawn, wait = drawn.at + GROWS_EVERY_MS - performance.now();
     clearTimeout(drawn.later);
     if (wait > 0 && scene.count !== drawn.count && scene.robot.name === this.#scene?.robot.name) {
-      drawn.later = setTimeout(() => this.show(scene), wait);
+      const whole = scene;
+      drawn.later = setTimeout(() => this.show(whole), wait);
       scene = { ...scene, end: drawn.end, count: drawn.count, time: Math.min(scene.time, drawn.end) };
     }
     this.#scene = scene;
