@@ -142,6 +142,19 @@ def test_a_node_tells_its_reason_its_ports_and_its_line(see, recording_of_the_bo
         assert "(3.5, 1.5" in told
 
 
+def test_the_bar_says_what_holds_the_robot_and_how_full_its_battery_is(shown, see, drive):
+    held = next(tick for tick in drive.ticks if tick.robots[0].gate_reason)
+    seen = see(shown.url)
+    for time_s, held_by in ((held.stamp_s - 5.0, ""), (held.stamp_s + 0.2, "an obstacle")):
+        seen.seek(time_s)
+        told = seen.run(
+            "Object.fromEntries([...document.querySelectorAll('#figures div')]"
+            ".map((each) => [...each.children].map((part) => part.textContent)))"
+        )
+        assert told.get("held by", "") == held_by
+        assert float(told["battery"].removesuffix(" %")) == pytest.approx(100 - time_s / 36, abs=0.1)
+
+
 def test_folding_hides_what_does_not_run_and_searching_finds_it(shown, see):
     seen = see(f"{shown.url}#t=30")
     count = "document.querySelectorAll('#tree .row:not([hidden])').length"
