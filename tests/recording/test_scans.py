@@ -9,13 +9,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from explore_bt.mission import load_mission
 from explore_bt.plugin import load_plugins
 from explore_bt.recording import McapRecorder, Recording, read_recording
 from explore_bt.runtime import StopFlag, run_mission
-from explore_bt.types import Pose2
+from explore_bt.types import Pose2, Scan2D, Twist2
 from tests.groot.box import WORLD
 
 WIDTH_M, HEIGHT_M, WALL_M, NOISE_M = 6.0, 3.0, 0.1, 0.01
@@ -81,11 +83,31 @@ def test_scans_of_a_turning_robot_lie_on_the_walls_within_noise(turning):
 def test_a_scan_is_recorded_from_where_the_robot_was_when_it_ended(recorded_drive, tmp_path):
     tick = recorded_drive.ticks[100]
     seen, robot = Pose2(1.0, 2.0, 0.5), tick.robots[0]
-    for given, expected in ((seen, seen), (None, robot.estimate.T_map_base)):
-        ticks = [replace(tick, robots=(replace(robot, scan_pose=given),))]
+    for told, expected in ((seen, seen), (None, robot.estimate.T_map_base)):
+        ticks = [replace(tick, robots=(replace(robot, scan_pose=told),))]
         drive = replace(recorded_drive, ticks=ticks).in_folder(tmp_path)
         drive.show_to(McapRecorder(McapRecorder.Options()))
         (message,) = read_recording(drive.run.folder / "recording.mcap").messages("/robot/scan")
         place = message.value["pose"]["position"]
         there = expected.compose(robot.scan.T_base_sensor)
         assert (place["x"], place["y"]) == pytest.approx(there.xy, abs=1e-3)
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-1.5, 1.5))
+def test_a_sweep_around_a_moving_robot_is_straight_again_to_what_was_driven_across_the_beams(v, w):
+    """Of a round room, which the robot crosses while it turns: every beam ends on its wall again."""
+    times, angles = np.linspace(-0.1, 0.0, 180), np.linspace(-math.pi, math.pi, 180)
+    x, yaw = v * times, w * times  # where the robot was; its turn meanwhile bends the way by micrometres
+    along = x * np.cos(yaw + angles)
+    ranges = -along + np.sqrt(along**2 + 3.0**2 - x**2)
+    scan = Scan2D(1.0, angles, ranges.astype(np.float32), times, 0.05, 10.0)
+    straight = np.hypot(*scan.straightened(Twist2(v, w)).points().T)
+    assert np.abs(straight - 3.0).max() < 1e-3
+
+
+def test_what_is_no_range_stays_none_when_a_scan_is_straightened():
+    nothing = np.array([np.nan, np.inf, 1.0], dtype=np.float32)
+    scan = Scan2D(1.0, np.zeros(3), nothing, np.array([-0.2, -0.1, 0.0]), 0.05, 10.0)
+    assert scan.straightened(Twist2(0.5, 1.0)).ranges_m.tolist() == pytest.approx(
+        nothing.tolist(), nan_ok=True
+    )
