@@ -60,9 +60,15 @@ def ordered(log: Log) -> tuple[Log, Log]:
     """The ticks in their order, and what each leaf lived through.
 
     Their timers halt between the ticks, ours when it is the node's turn: halts of different leaves may come
-    in another order.
+    in another order. And a timer's thread may halt a leaf that the tick is halting: twice is once.
     """
-    return [event for event in log if event[1] != "halt"], sorted(log, key=lambda event: event[0])
+    by_leaf = sorted(log, key=lambda event: event[0])
+    once = [
+        event
+        for before, event in zip([None, *by_leaf], by_leaf, strict=False)
+        if event[1] != "halt" or event != before
+    ]
+    return [event for event in log if event[1] != "halt"], once
 
 
 def pair_with_timeout(seed: int, registry: Registry, folder: Path) -> tuple[Ours, Theirs] | None:
