@@ -1,5 +1,6 @@
 """The contracts: one abstract class per plugin kind, and the values only they exchange."""
 
+from explore_bt.interfaces.commons import Commons
 from explore_bt.interfaces.controller import Controller, ControlOutput, ControlStatus
 from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.exporter import Exporter, RobotProduct
@@ -24,6 +25,7 @@ from explore_bt.interfaces.truth import GroundTruth
 
 __all__ = [
     "API_VERSION",
+    "Commons",
     "ControlOutput",
     "ControlStatus",
     "Controller",

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import zlib
 from abc import ABC
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
+from explore_bt.interfaces.commons import Commons
 from explore_bt.interfaces.truth import GroundTruth
 from explore_bt.types import MotionLimits, Pose2
 
@@ -74,6 +75,7 @@ class RobotContext:
         limits: the driver's limits, capped by the mission's.
         truth: the simulator's truth, None on hardware.
         resumed: where the run goes on, None for one that begins. ``start`` is still where the mission began.
+        commons: what the robots of the mission share in this process.
     """
 
     robot: str = "robot"
@@ -83,6 +85,7 @@ class RobotContext:
     limits: MotionLimits = MotionLimits()
     truth: GroundTruth | None = None
     resumed: Resumption | None = None
+    commons: Commons = field(default_factory=Commons, compare=False, repr=False)
 
     def rng(self, stream: str) -> np.random.Generator:
         """An independent generator for one named use; the same seed, robot and name give the same."""

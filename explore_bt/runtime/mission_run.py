@@ -11,7 +11,7 @@ from pathlib import Path
 from explore_bt.checkpoint import CheckpointStore
 from explore_bt.errors import UserError
 from explore_bt.files import write_whole
-from explore_bt.interfaces import Event, RobotProduct, RunInfo, Sink
+from explore_bt.interfaces import Commons, Event, RobotProduct, RunInfo, Sink
 from explore_bt.mission import Mission
 from explore_bt.plugin import Registry
 from explore_bt.runtime.attendant import Attendant
@@ -67,7 +67,8 @@ def run_mission(
     began_s = time.perf_counter() - (resumed.memory.wall_time_s if resumed else 0.0)
     observers = Observers(sinks)
     attendant = attendant or Attendant()
-    robots = [Robot(spec, mission, seed, stop, observers.event) for spec in mission.robots]
+    commons = Commons()
+    robots = [Robot(spec, mission, seed, stop, observers.event, commons) for spec in mission.robots]
     try:
         for robot in robots:
             robot.setup(resumed.robots[robot.name] if resumed else None)

@@ -6,17 +6,13 @@ import logging
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
 from explore_bt.exploration import warm_up
-from explore_bt.interfaces import Event, MapMemory, MapView, RobotContext, RobotSnapshot
+from explore_bt.interfaces import Commons, Event, MapMemory, MapView, RobotContext, RobotSnapshot
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.fault_log import FaultLog
-from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.resumption import Cut, check_clock
@@ -24,9 +20,9 @@ from explore_bt.runtime.robot_keeping import Remembering, RobotKeeping
 from explore_bt.runtime.robot_news import RobotNews
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.runtime.scorekeeper import Scorekeeper
+from explore_bt.runtime.senses import Senses
 from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
-from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
@@ -37,14 +33,12 @@ from explore_bt.types import (
     Budget,
     Drawing,
     Estimate,
-    Health,
     Measurement,
     MovingObstacle,
     Path,
     Pose2,
     Scan2D,
     Trajectory,
-    Twist2,
 )
 
 __all__ = ["Robot"]
@@ -62,15 +56,22 @@ class Robot:
     """Owns its plugins and serves the leaves of its tree (see ``interfaces.RobotServices``)."""
 
     def __init__(
-        self, spec: RobotSpec, mission: Mission, seed: int, stop: StopFlag, tell: Callable[[Event], None]
+        self,
+        spec: RobotSpec,
+        mission: Mission,
+        seed: int,
+        stop: StopFlag,
+        tell: Callable[[Event], None],
+        commons: Commons | None = None,
     ) -> None:
-        """Construct every plugin; nothing is opened yet."""
+        """Construct every plugin; nothing is opened yet. ``commons`` is what all robots of the run share."""
         self.name = spec.name
         self._spec = spec
         self._mission = mission
         self._seed = seed
         self._stop = stop
         self._tell = tell
+        self._commons = commons or Commons()
         self.driver = spec.driver.make()
         self.slam = spec.slam.make()
         self._planner = spec.planner.make()
@@ -80,21 +81,15 @@ class Robot:
         self._probe: Probe | None = None
         self._counts = TickCounts(self.tree.nodes)
         self._sketch = Sketch()
-        self._scan: Scan2D | None = None
-        self._scan_pose: Pose2 | None = None
-        self._scan_twist = Twist2()
-        self._measured: list[Measurement] = []
         self._view: MapView | None = None
         self._map_memory = MapMemory()
         self._way_finder = WayFinder(self._planner, self.slam, stop)
         self._tight = TightPlaces()
         self._purse = Purse(mission.limits)
-        self._slam_fault = ""
         self._faults = FaultLog(self.name, self.tell)
+        self._senses = Senses(self.slam, self._faults)
         self._held_s = 0.0
         self._news = RobotNews(self.tree, self.tell)
-        self._people = People()
-        self.moving: tuple[MovingObstacle, ...] = ()
 
     def setup(self, cut: Cut | None = None) -> None:
         """Open the driver, warm everything up; ``cut`` is where a resumed run broke off.
@@ -103,7 +98,13 @@ class Robot:
             UserError: whatever the mission asked for cannot be had.
         """
         resumed = cut.resumption if cut else None
-        context = RobotContext(robot=self.name, seed=self._seed, start=self._spec.start, resumed=resumed)
+        context = RobotContext(
+            robot=self.name,
+            seed=self._seed,
+            start=self._spec.start,
+            resumed=resumed,
+            commons=self._commons,
+        )
         self.driver.setup(context)
         check_clock(self.driver, resumed)
         limits = self._mission.limits.apply(self.driver.limits)
@@ -150,7 +151,13 @@ class Robot:
     @property
     def lidar_range_m(self) -> float:
         """How far the lidar sees."""
-        return self._scan.range_max_m if self._scan else DEFAULT_LIDAR_RANGE_M
+        scan = self._senses.scan
+        return scan.range_max_m if scan else DEFAULT_LIDAR_RANGE_M
+
+    @property
+    def moving(self) -> tuple[MovingObstacle, ...]:
+        """What moves around the robot, as the newest scan tells."""
+        return self._senses.moving
 
     @property
     def stop_requested(self) -> bool:
@@ -172,10 +179,7 @@ class Robot:
 
     def estimate(self) -> Estimate:
         """The newest pose, ``lost`` if the SLAM plugin itself broke down."""
-        estimate = self.slam.estimate()
-        if self._slam_fault:
-            return replace(estimate, health=Health.LOST, reason=self._slam_fault)
-        return estimate
+        return self._senses.estimate()
 
     def trajectory(self) -> Trajectory:
         """The way driven in this mission; what a loaded map brings along is left out."""
@@ -191,7 +195,7 @@ class Robot:
 
     def scan(self) -> Scan2D | None:
         """The newest scan, None before the first."""
-        return self._scan
+        return self._senses.scan
 
     def plan(self, goal: Pose2, via: Sequence[tuple[float, float]] = ()) -> Path:
         """A path from where the robot is now, over the places of ``via`` that can be come to.
@@ -209,7 +213,7 @@ class Robot:
                 self.footprint_radius_m,
                 straight_m,
             )
-            return centred(path, self._seen_points(), grid, self.footprint_radius_m)
+            return centred(path, self._senses.seen_points(self.pilot), grid, self.footprint_radius_m)
         except (PlanningFailure, UserError):
             raise
         except Exception as error:
@@ -243,17 +247,17 @@ class Robot:
         for measurement in measurements:
             self._take(measurement)
         if any(isinstance(measurement, Scan2D) for measurement in measurements):
-            self._show_gate()
+            self.pilot.see(*self._senses.look(self.pilot))
         self._news.of_health(self.estimate(), self._clock_s())
 
     def act(self, now_s: float, dt_s: float) -> None:
         """One control period; a controller that breaks down is braked for."""
         try:
-            self.pilot.step(self.estimate(), self._scan, now_s, dt_s)
+            self.pilot.step(self.estimate(), self.scan(), now_s, dt_s)
         except Exception as error:  # any plugin's failure ends in a controlled stop, never in a crash
             self._faults.note(f"controller {self._controller.name}", error)
             self.pilot.brake(f"controller {self._controller.name} failed: {error!r}", now_s, dt_s)
-        if self._scan is not None:  # before the first one there is nothing to drive by, nor to drive to
+        if self.scan() is not None:  # before the first one there is nothing to drive by, nor to drive to
             self._news.of_gate(self.pilot, self._clock_s())
         self._keep_score(now_s, dt_s)
 
@@ -305,23 +309,23 @@ class Robot:
         self._keeping.restore(cut.memory)
         for measurement in cut.measured:
             self._take(measurement)
-        self._measured, self._scan, self._scan_pose = [], None, None
+        self._senses.begin()
         self.slam.pick_up()
         if cut.score is not None:
             self.scores.catch_up(cut.score, cut.true_way)
 
     def snapshot(self) -> RobotSnapshot:
         """What observers are shown after a tick; what was measured and who was ticked is shown once."""
-        measured, self._measured = tuple(self._measured), []
+        senses = self._senses
         nodes = self._counts.states()
         self._counts.forget()
         return RobotSnapshot(
             robot=self.name,
             estimate=self.estimate(),
             grid=self.slam.grid(),
-            scan=self._scan,
-            scan_pose=self._scan_pose,
-            scan_twist=self._scan_twist,
+            scan=senses.scan,
+            scan_pose=senses.scan_pose,
+            scan_twist=senses.scan_twist,
             path=self.pilot.path,
             motion=self.pilot.motion,
             gate_reason=self.pilot.gate_reason,
@@ -329,7 +333,7 @@ class Robot:
             blackboard=dict(self.blackboard),
             score=self.scores.score(),
             true_pose=self.scores.true_pose,
-            measured=measured,
+            measured=tuple(senses.drain()),
             held_by=self.pilot.held_by,
             drawing=self._sketch.drawing,
             moving=self.moving,
@@ -352,45 +356,10 @@ class Robot:
         self.scores.control_step(pose, self.pilot.motion, now_s, dt_s)
 
     def _take(self, measurement: Measurement) -> None:
-        if isinstance(measurement, Scan2D):
-            self._scan = measurement
-        elif isinstance(measurement, Battery):
+        if isinstance(measurement, Battery):
             self._purse.take(measurement)
-            return
-        if self._slam_fault:
-            return
-        self._measured.append(measurement)
-        self._keeping.hear(measurement)
-        try:
-            self.slam.update(measurement)
-        except Exception as error:  # a SLAM that raises is lost: the gate brakes, the reason is recorded
-            self._slam_fault = f"slam {self.slam.name} failed: {error!r}"
-            self._faults.note(f"slam {self.slam.name}", error)
-
-    def _show_gate(self) -> None:
-        assert self._scan is not None
-        estimate = self._estimate_of_scan(self._scan)
-        self._scan_pose, self._scan_twist = estimate.T_map_base, self.pilot.motion.twist
-        if self.pilot.has_jumped(estimate):
-            self._people.forget()
-        around = self._people.around(
-            self._scan, estimate.T_map_base, self.pilot.motion.twist, self._seen_points(), self.slam.grid()
-        )
-        self.moving = around.moving
-        self.pilot.see(around, estimate)
-
-    def _seen_points(self) -> NDArray[np.float64]:
-        """(N, 2) metres, ``map`` frame: the newest scan's returns, less noisy close by."""
-        if self._scan is None:
-            return np.empty((0, 2))
-        pose = self._estimate_of_scan(self._scan).T_map_base
-        return np.ascontiguousarray(pose.apply(steadied(self._scan).points()))
-
-    def _estimate_of_scan(self, scan: Scan2D) -> Estimate:
-        """The newest, carried forward to the scan where SLAM lags behind."""
-        estimate = self.slam.estimate()
-        is_late = estimate.stamp_s < scan.stamp_s
-        return self.pilot.predict(estimate, scan.stamp_s) if is_late else estimate
+        elif self._senses.take(measurement):
+            self._keeping.hear(measurement)
 
     def _read(self) -> Sequence[Measurement]:
         try:

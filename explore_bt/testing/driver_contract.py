@@ -21,12 +21,13 @@ import threading
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from explore_bt.interfaces import API_VERSION, Driver, Playback, RobotContext
+from explore_bt.interfaces import API_VERSION, Commons, Driver, Playback, RobotContext
 from explore_bt.types import (
     Imu,
     Measurement,
@@ -225,7 +226,7 @@ class DriverContract(ABC):
     def test_close_is_idempotent_and_stop_after_it_is_harmless(self, tmp_path: Path) -> None:
         """Everything is let go of once; a late stop flag does no harm."""
         driver = self.make(tmp_path)
-        driver.setup(self.context)
+        driver.setup(replace(self.context, commons=Commons()))  # every driver in a mission of its own
         driver.close()
         driver.close()
         driver.stop()
@@ -256,7 +257,7 @@ class DriverContract(ABC):
     @contextmanager
     def _ready(self, tmp_path: Path) -> Iterator[Driver]:
         driver = self.make(tmp_path)
-        driver.setup(self.context)
+        driver.setup(replace(self.context, commons=Commons()))  # every driver in a mission of its own
         try:
             yield driver
         finally:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import MotionLimits, Pose2, Twist2, wrap_angle
-from explore_bt_drivers.sim2d.motion import ON_STEP, STEP_S, advance, states_at
+from explore_bt_drivers.sim2d.motion import ACC, ON_STEP, STEP_S, V, X, Y, advance, states_at
 from explore_bt_drivers.world import World
 
 __all__ = ["Body", "Ramp", "Track"]
@@ -94,7 +94,9 @@ class Body:
     Attributes:
         track: where it has been.
         world: what it runs into; may be exchanged for another version between two calls.
-        contacts: how many separate times it has.
+        contacts: how many separate times it has, other robots included.
+        radius_m: of the footprint.
+        has_stepped_back: whether the last internal step was taken back.
     """
 
     def __init__(
@@ -103,7 +105,8 @@ class Body:
         self.track = Track(start, step)
         self.contacts = 0
         self.world = world
-        self._radius_m = radius_m
+        self.radius_m = radius_m
+        self.has_stepped_back = False
         self._limits = limits
         self._limit_values = (
             limits.speed_mps,
@@ -122,6 +125,17 @@ class Body:
         """Where it is now, ``map`` frame."""
         x, y, yaw = (float(value) for value in self.track.now[:3])
         return Pose2(x, y, wrap_angle(yaw))
+
+    @property
+    def xy(self) -> tuple[float, float]:
+        """Where its centre is now, metres, ``map`` frame."""
+        x, y = self.track.now[:2].tolist()
+        return (x, y)
+
+    @property
+    def speed_limit_mps(self) -> float:
+        """It is never faster."""
+        return self._limits.speed_mps
 
     def command(self, twist: Twist2) -> None:
         """Go for a twist from the next internal step on."""
@@ -160,6 +174,15 @@ class Body:
         with self._lock:
             self._order = _HALT
 
+    def step_back(self) -> None:
+        """Something stands in the way: the newest internal step is not made, but for its turn."""
+        if self.has_stepped_back:
+            return
+        self.has_stepped_back = True
+        before, now = self.track.states[-2], self.track.now
+        now[[X, Y]] = before[[X, Y]]
+        now[[V, ACC]] = 0.0
+
     def advance(self, last_step: int) -> None:
         """Move on to an internal step."""
         while self.track.last_step < last_step:
@@ -179,7 +202,7 @@ class Body:
                 order.linear,
                 order.angular,
                 self._limit_values,
-                self._radius_m,
+                self.radius_m,
                 self._touching,
             )
             self.contacts += touches

@@ -9,12 +9,13 @@ from explore_bt.clock import Clock
 from explore_bt.errors import WorldError
 from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, Resumption, RobotContext
 from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt_drivers.sim2d.arena import Arena
+from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.sim2d.simulation import Simulation
-from explore_bt_drivers.sim2d.start import choose_start
-from explore_bt_drivers.sim2d.town import Town
 from explore_bt_drivers.sim2d.truth import Sim2dTruth
-from explore_bt_drivers.world import World, load_world, observable_floor
+from explore_bt_drivers.sim2d.venue import Venue
+from explore_bt_drivers.world import World, observable_floor
 
 __all__ = ["Sim2d"]
 
@@ -26,7 +27,8 @@ _MENDED_M = 0.02
 class Sim2d(Driver):
     """A round robot with lidar, IMU and slipping wheels among people, in a drawn world or a ROS map.
 
-    The ``map`` frame is the world's own. Time passes only while someone waits on the clock; the same
+    The ``map`` frame is the world's own. Robots of one mission whose worlds are the same file share it: they
+    see one another and can run into one another. Time passes only while someone waits on the clock; the same
     world, options, seed and commands give the same measurements, bit for bit.
     """
 
@@ -38,6 +40,7 @@ class Sim2d(Driver):
         super().__init__(options)
         assert isinstance(options, Sim2dOptions)
         self._options = options
+        self._arena: Arena | None = None
         self._simulation: Simulation | None = None
         self._truth: Sim2dTruth | None = None
         self._start: Pose2 | None = None
@@ -50,23 +53,23 @@ class Sim2d(Driver):
             WorldError: a world that cannot be used, a start inside an obstacle, no floor for walkers.
         """
         options = self._options
-        world = load_world(options.world)
-        self._start = choose_start(world, context.start, options.radius)
+        venue = Venue.of(options, context)
+        world, arena = venue.world, venue.arena
+        self._start = venue.start(options, context)
         stand = _stand(world, context.resumed, options.radius) or self._start
-        town = Town(world, options, self._start)
-        rehearsal = Simulation(world, options, stand, context, town.crowd(context.rng("walkers")))
-        rehearsal.body.command(Twist2(0.1, 0.1))
-        rehearsal.wait_until(rehearsal.now_s() + _WARM_UP_S)
+        _rehearse(world, options, stand, context, venue.crowd(options, context, self._start))
         observable_floor(world, self._start.xy, options.radius, 0.0)
-        crowd = town.crowd(context.rng("walkers"))
-        self._simulation = Simulation(world, options, stand, context, crowd)
-        body = self._simulation.body
-        self._truth = Sim2dTruth(world, self._start, body, crowd, options.radius, options.lidar_range)
+        crowd = venue.crowd(options, context, self._start)
+        self._arena = arena
+        self._simulation = Simulation(arena, options, stand, context, crowd)
+        self._truth = Sim2dTruth(arena, self._start, self._simulation.body, crowd, options.lidar_range)
 
     @property
     def clock(self) -> Clock:
-        """Simulated time: waiting on it moves the robot."""
-        return self._running()
+        """Simulated time, the same for all robots in this world: waiting on it moves them all."""
+        self._running()
+        assert self._arena is not None
+        return self._arena
 
     @property
     def command_delay_s(self) -> float:
@@ -117,6 +120,14 @@ class Sim2d(Driver):
         if self._simulation is None:
             raise RuntimeError("sim2d is used before setup()")
         return self._simulation
+
+
+def _rehearse(world: World, options: Sim2dOptions, stand: Pose2, context: RobotContext, crowd: Crowd) -> None:
+    """Compile every kernel, in a world apart."""
+    arena = Arena(world, context.resumed.stamp_s if context.resumed else 0.0)
+    rehearsal = Simulation(arena, options, stand, context, crowd)
+    rehearsal.body.command(Twist2(0.1, 0.1))
+    arena.wait_until(arena.now_s() + _WARM_UP_S)
 
 
 def _stand(world: World, resumed: Resumption | None, radius_m: float) -> Pose2 | None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from explore_bt.types import Scan2D
 from explore_bt_drivers.sim2d.body import Track
-from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.motion import YAW, X, Y, place_at, value_at
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.world import World
@@ -20,6 +22,21 @@ __all__ = ["Lidar"]
 _RANGE_MIN_M = 0.02
 _TAIL = 4.0
 """Noise can bring a return from beyond the range back into it: look that many sigmas further."""
+
+
+class _PassersBy(Protocol):
+    """Who may be in the way of beams: people, other robots."""
+
+    def cast(
+        self,
+        track: Track,
+        stamp_s: float,
+        times_s: NDArray[np.float64],
+        angles_rad: NDArray[np.float64],
+        limit_m: float,
+        ranges_m: NDArray[np.float64],
+    ) -> NDArray[np.bool_] | None:
+        """Shorten the ranges of a sweep; the beams that now end there, None where nobody is about."""
 
 
 class Lidar:
@@ -35,10 +52,10 @@ class Lidar:
         options: Sim2dOptions,
         rng: np.random.Generator,
         dropout_rng: np.random.Generator,
-        crowd: Crowd,
+        passers_by: Sequence[_PassersBy],
     ) -> None:
         self.world = world
-        self._crowd = crowd
+        self._passers_by = passers_by
         self._rate_hz = options.lidar_rate
         self._range_m = options.lidar_range
         self._noise_m = options.range_noise if options.noise else 0.0
@@ -66,12 +83,15 @@ class Lidar:
         reach = self._range_m + _TAIL * self._noise_m
         index, states = self.world.index, track.states
         _cast_sweep(index, states, track.first_step, stamp_s, self._times, self._angles, reach, ranges)
-        shown = self._crowd.cast(track, stamp_s, self._times, self._angles, reach, ranges)
+        about = [
+            each.cast(track, stamp_s, self._times, self._angles, reach, ranges) for each in self._passers_by
+        ]
         if self._noise_m > 0.0:
             ranges += self._rng.normal(0.0, self._noise_m, len(ranges))
         ranges[ranges > self._range_m] = math.inf
-        if shown is not None:  # people come nearer than walls do, even into the lidar
-            ranges[shown & (ranges < _RANGE_MIN_M)] = math.nan
+        for shown in about:  # people come nearer than walls do, even into the lidar
+            if shown is not None:
+                ranges[shown & (ranges < _RANGE_MIN_M)] = math.nan
         if self._dropout > 0.0:
             ranges[self._dropout_rng.random(len(ranges)) < self._dropout] = math.nan
         measured = ranges.astype(np.float32)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 
 from explore_bt_drivers.sim2d.motion import ON_STEP, STEP_S
 from explore_bt_drivers.world import Stand, World, with_solids
@@ -17,29 +18,33 @@ _NEVER = 2**62
 
 
 class Scenery:
-    """Moves the things of a world when they are due and the robot is not in the way.
+    """Moves the things of a world when they are due and no robot is in the way.
 
-    A thing goes to where it should be by now, or stays where it is until the footprint and 1 cm around it are
-    clear of that place.
+    A thing goes to where it should be by now, or stays where it is until every footprint and 1 cm around it
+    are clear of that place.
 
     Attributes:
         world: the version in force.
     """
 
-    def __init__(self, world: World, footprint_m: float) -> None:
+    def __init__(self, world: World) -> None:
         self.world = world
         self._drawn = world
-        self._room_m = footprint_m + _SPARE_M
         self._dues = [[_step_of(stand) for stand in thing.stands] for thing in world.things]
         self._stands = (0,) * len(world.things)
         self._versions = {self._stands: world}
         self._steps = sorted(step for dues in self._dues for step in dues)
 
-    def settle(self, step: int, x: float, y: float) -> World:
-        """Bring the world up to an internal step, the robot's centre being at x, y; the version in force."""
+    def settle(self, step: int, footprints: Sequence[tuple[float, float, float]]) -> World:
+        """Bring the world up to an internal step; the version in force.
+
+        Args:
+            step: the internal step.
+            footprints: x, y and radius of every robot, metres.
+        """
         stands = self._wanted(step)
         if stands != self._stands:
-            self._settle(stands, x, y)
+            self._settle(stands, footprints)
         return self.world
 
     def next_step(self, step: int) -> int:
@@ -53,17 +58,20 @@ class Scenery:
         """Where every thing should be at an internal step."""
         return tuple([bisect_right(dues, step) - 1 for dues in self._dues])
 
-    def _settle(self, wanted: tuple[int, ...], x: float, y: float) -> None:
+    def _settle(self, wanted: tuple[int, ...], footprints: Sequence[tuple[float, float, float]]) -> None:
         things = enumerate(zip(self._stands, wanted, strict=True))
         self._stands = tuple(
-            [to if to != now and self._is_clear(thing, to, x, y) else now for thing, (now, to) in things]
+            [
+                to if to != now and self._is_clear(thing, to, footprints) else now
+                for thing, (now, to) in things
+            ]
         )
         self.world = self._version()
 
-    def _is_clear(self, thing: int, stand: int, x: float, y: float) -> bool:
-        solids = self._drawn.things[thing].stands[stand].solids
-        gaps = [clearance_of(outline_edges(solid.corners), x, y) for solid in solids]
-        return bool(min(gaps, default=math.inf) >= self._room_m)
+    def _is_clear(self, thing: int, stand: int, footprints: Sequence[tuple[float, float, float]]) -> bool:
+        edges = [outline_edges(solid.corners) for solid in self._drawn.things[thing].stands[stand].solids]
+        gaps = (clearance_of(each, x, y) - radius_m for each in edges for x, y, radius_m in footprints)
+        return bool(min(gaps, default=math.inf) >= _SPARE_M)
 
     def _version(self) -> World:
         """The world with its things as they stand; each version is built once."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -10,19 +12,44 @@ import numpy as np
 from explore_bt.errors import WorldError
 from explore_bt.types import Pose2
 from explore_bt_drivers.world import World, fitting_cells
+from explore_bt_drivers.world.observable import reachable_cells
 
-__all__ = ["choose_start", "widest_spot"]
+__all__ = ["Taken", "choose_start", "widest_spot"]
 
 _TOUCH_M = 1e-6
+_SPARE_M = 0.05
+_APART_M = 0.4
+"""What is left between robots that begin side by side."""
 
 
-def choose_start(world: World, wanted: Pose2 | None, radius_m: float) -> Pose2:
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """A place where a robot begins; metres."""
+
+    xy: tuple[float, float]
+    radius_m: float
+
+
+def choose_start(
+    world: World, wanted: Pose2 | None, radius_m: float, others: Mapping[str, Taken] | None = None
+) -> Pose2:
     """The pose to begin with: as wanted, else as the world's file says, else the widest spot.
+
+    Where another robot has taken a place that nobody asked for by name, the nearest one beside it.
+
+    Args:
+        world: where.
+        wanted: as the mission says.
+        radius_m: of the footprint.
+        others: who stands there already, by name.
 
     Raises:
         WorldError: the footprint does not fit there; names the nearest place where it does.
     """
+    others = others or {}
     start = wanted or world.start or widest_spot(world)
+    if wanted is None and others:
+        start = _beside(world, start, radius_m, others)
     if not all(math.isfinite(value) for value in (start.x, start.y, start.yaw_rad)):
         raise WorldError(f"{world.source}: the start {_xy(start)} is not a place; give finite numbers")
     clearance, thing = world.nearest_thing(start.x, start.y)
@@ -33,7 +60,31 @@ def choose_start(world: World, wanted: Pose2 | None, radius_m: float) -> Pose2:
             f"the robot's radius of {radius_m:g} m needs {radius_m:g} m clearance. "
             f"{_nearest_fit(world, start, radius_m)}"
         )
+    for name, other in others.items():
+        gap_m = math.dist(other.xy, start.xy) - other.radius_m - radius_m
+        if gap_m < _TOUCH_M:
+            raise WorldError(
+                f"{world.source}: the start {_xy(start)} is taken: robot {name} stands "
+                f"{max(gap_m + radius_m, 0.0):.2f} m from it, the radius is {radius_m:g} m. Give the robots "
+                f"starts that are {other.radius_m + radius_m:.2f} m or more apart, or none"
+            )
     return start
+
+
+def _beside(world: World, start: Pose2, radius_m: float, others: Mapping[str, Taken]) -> Pose2:
+    """The nearest place to a start that leaves the others room to turn and go; itself if it does."""
+    cells = np.argwhere(reachable_cells(world, start.xy, radius_m + _SPARE_M))
+    places = np.vstack((start.xy, world.floor.centers_of(cells)))
+    for other in others.values():
+        apart_m = np.hypot(*(places - other.xy).T) - other.radius_m - radius_m
+        places = places[apart_m >= _APART_M]
+    if not len(places):
+        raise WorldError(
+            f"{world.source}: there is no room for another robot of radius {radius_m:g} m beside "
+            f"{', '.join(others)}; give each robot a start"
+        )
+    x, y = places[int(np.argmin(np.hypot(*(places - start.xy).T)))].tolist()
+    return Pose2(x, y, start.yaw_rad)
 
 
 def widest_spot(world: World) -> Pose2:

@@ -24,15 +24,17 @@ class Town:
             WorldError: there is none wide enough for them.
         """
         self._people = world.people
-        self._footprint_m = options.radius
         self._walkers = options.walkers
         self._strolls = (
             Strolls(world, start.xy, options.walker_radius, options.walker_speed) if options.walkers else None
         )
 
-    def crowd(self, rng: np.random.Generator) -> Crowd:
-        """Everybody where they begin; every walker draws from a generator of their own."""
+    def crowd(self, rng: np.random.Generator, footprint_m: float) -> Crowd:
+        """Everybody where they begin, as a robot of that radius meets them.
+
+        Every walker draws from a generator of their own.
+        """
         walks = [there_and_back(person) for person in self._people]
         if self._strolls is not None:
             walks += [self._strolls.walk(own) for own in rng.spawn(self._walkers)]
-        return Crowd(walks, self._footprint_m)
+        return Crowd(walks, footprint_m)

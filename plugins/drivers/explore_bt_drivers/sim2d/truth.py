@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from explore_bt.interfaces import GroundTruth
 from explore_bt.types import OccupancyGrid, Pose2
+from explore_bt_drivers.sim2d.arena import Arena
 from explore_bt_drivers.sim2d.body import Body
 from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.motion import STEP_S
-from explore_bt_drivers.world import World, observable_floor
 
 __all__ = ["SPARE_M", "Sim2dTruth"]
 
@@ -23,13 +23,10 @@ SPARE_M = 0.025
 class Sim2dTruth(GroundTruth):
     """Reads the body, the crowd and the world; changes nothing."""
 
-    def __init__(
-        self, world: World, start: Pose2, body: Body, crowd: Crowd, radius_m: float, range_m: float
-    ) -> None:
-        self._drawn = world
+    def __init__(self, arena: Arena, start: Pose2, body: Body, crowd: Crowd, range_m: float) -> None:
+        self._arena = arena
         self._body = body
         self._crowd = crowd
-        self._radius_m = radius_m
         self._range_m = range_m
         self._start = start
 
@@ -40,12 +37,13 @@ class Sim2dTruth(GroundTruth):
     def contacts(self) -> int:
         """Separate touches; 5 mm must come between before there can be another.
 
-        Of things, and of people where the robot moved faster than 0.05 m/s at some moment of the touch.
+        Of things, of other robots, and of people where the robot moved faster than 0.05 m/s at some moment
+        of the touch.
         """
         return self._body.contacts + self._crowd.contacts
 
     def clearance_m(self) -> float:
-        """Exact distance from the robot's centre to the nearest solid of the present, metres; no people."""
+        """Exact distance from the robot's centre to the nearest solid of now, metres; not to who moves."""
         pose = self._body.pose
         return self._body.world.clearance_m(pose.x, pose.y)
 
@@ -63,4 +61,4 @@ class Sim2dTruth(GroundTruth):
 
     @cached_property
     def _floor(self) -> OccupancyGrid:
-        return observable_floor(self._drawn, self._start.xy, self._radius_m + SPARE_M, self._range_m)
+        return self._arena.observable_floor(self._start.xy, self._body.radius_m + SPARE_M, self._range_m)
