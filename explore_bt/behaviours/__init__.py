@@ -18,6 +18,7 @@ from explore_bt.behaviours.stop_requested import StopRequested
 from explore_bt.behaviours.take_back import TakeBack
 from explore_bt.behaviours.turn import Turn
 from explore_bt.behaviours.wait import Wait
+from explore_bt.behaviours.wait_for_team import WaitForTeam
 from explore_bt.behaviours.wait_until_localised import WaitUntilLocalised
 from explore_bt.behaviours.watch_progress import WatchProgress
 
@@ -42,6 +43,7 @@ __all__ = [
     "TakeBack",
     "Turn",
     "Wait",
+    "WaitForTeam",
     "WaitUntilLocalised",
     "WatchProgress",
 ]
@@ -65,6 +67,7 @@ LEAVES = (
     TakeBack,
     Turn,
     Wait,
+    WaitForTeam,
     WaitUntilLocalised,
     WatchProgress,
 )

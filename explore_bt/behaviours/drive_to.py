@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 
+from explore_bt.behaviours.mates import goes_before, mate_in_the_way
 from explore_bt.behaviours.people import SOMEONE, someone_is_in_the_way, who_is_near
 from explore_bt.errors import ComponentFailure, GoalBlocked, NoPath, PlanningFailure, StartBlocked
 from explore_bt.exploration import clearance_at, visible_unknown_area
 from explore_bt.interfaces import ControlStatus, HeldBy
 from explore_bt.tree import Input, Key, Leaf, Output, Status
-from explore_bt.types import Path, Pose2, Waypoint, way_along
+from explore_bt.types import Mate, Path, Pose2, Waypoint, way_along
 from explore_bt.units import Area, Duration, Length
 
 __all__ = ["DriveTo"]
@@ -23,6 +24,10 @@ _NOTHING_M2 = 0.02
 _DETOUR_M = 5.0
 _PASSED_M = 0.2
 _BESIDE_M = 1.0
+_MATE_S, _INSISTS_S = 1.0, 15.0
+"""A mate that goes first is planned around after this; one that does not has so long to move off."""
+_MOVING_MPS = 0.05
+_MATE_PLANS = 3
 
 
 class DriveTo(Leaf):
@@ -33,8 +38,10 @@ class DriveTo(Leaf):
     (``look_again``; then also where the way is cut and the one around is 5 m longer). A goal that promises
     less than ``until_seen`` is a scrap: once begun it is driven to, or until nothing of it is left, for
     deciding anew would only trade it for the next scrap.
-    Someone in the way is waited for, without a new plan, for what is free now is not free in a second; after
-    a while (``give_way``) that is a FAILURE too, ``someone_in_the_way``: see ``make_way``.
+    A team mate in the way is waited for, or planned around; where there is no way around and it goes first,
+    that is a FAILURE ``someone_in_the_way``: see ``make_way``. Someone unknown in the way is waited for,
+    without a new plan, for what is free now is not free in a second; after a while (``give_way``) that is
+    such a FAILURE too.
     FAILURE when no path is left; the planner's typed reason goes to ``failure``.
     """
 
@@ -71,7 +78,7 @@ class DriveTo(Leaf):
         """A new drive begins."""
         self._path: Path | None = None
         self._via = list(self.goal.via)
-        self._held = 0
+        self._held = self._mate_plans = 0
         self._checked_revision = -1
         self._cut = ""
         self._begun_m = self.robot.distance_m
@@ -87,6 +94,8 @@ class DriveTo(Leaf):
         if self._is_seen():
             return self._stop_here("seen from here", self.feedback_message)
         output = self.robot.pilot.output
+        if (held := self._held_by_mate()) is not None:
+            return held
         if output.status is ControlStatus.ARRIVED:
             self.reached = self.goal
             away_m = self.robot.estimate().T_map_base.distance_to(self.goal.pose)
@@ -134,6 +143,8 @@ class DriveTo(Leaf):
 
     def _may_be_people(self, refusal: Exception) -> bool:
         """Whether someone may stand in the only way, or on the goal."""
+        if isinstance(refusal, NoPath | GoalBlocked) and mate_in_the_way(self.robot) is not None:
+            return True
         if isinstance(refusal, GoalBlocked):
             return bool(who_is_near(self.robot, self.goal.pose, _BESIDE_M))
         return bool(self.robot.moving) and isinstance(refusal, NoPath | StartBlocked)
@@ -155,6 +166,42 @@ class DriveTo(Leaf):
             return Status.FAILURE
         self.say(f"waiting for someone to pass, up to {self.give_way:.0f} s")
         return Status.RUNNING
+
+    def _held_by_mate(self) -> Status | None:
+        """What to do about a team mate in the way; None if there is none, or it may still move off."""
+        pilot = self.robot.pilot
+        is_stuck = pilot.output.status is ControlStatus.STUCK
+        if not is_stuck and pilot.blocked_s <= _MATE_S:
+            return None
+        mate = mate_in_the_way(self.robot)
+        if mate is None:
+            return None
+        self.say(f"waiting for {mate.name}")
+        if mate.is_parked or goes_before(self.robot, mate):
+            is_moving = abs(mate.twist.linear_mps) > _MOVING_MPS and pilot.blocked_s < self.give_way
+            return Status.RUNNING if is_moving else self._plan_around_mate(mate)
+        if pilot.blocked_s > _INSISTS_S:
+            return self._give_way_to(mate)
+        if is_stuck:
+            return self._plan(why=f"again, {mate.name} was in the way")
+        return Status.RUNNING
+
+    def _plan_around_mate(self, mate: Mate) -> Status:
+        self._mate_plans += 1
+        try:
+            self._path = self.robot.plan(self.goal.pose, self._via)
+        except (PlanningFailure, ComponentFailure):
+            return self._give_way_to(mate)
+        if self._mate_plans > _MATE_PLANS:
+            return self._give_way_to(mate)
+        self.robot.pilot.follow(self._path)
+        self.say(f"around {mate.name}: {self._path.length_m:.1f} m")
+        return Status.RUNNING
+
+    def _give_way_to(self, mate: Mate) -> Status:
+        self.failure = SOMEONE
+        self.say(f"{mate.name} is in the way")
+        return Status.FAILURE
 
     def _note_passed(self) -> None:
         here = self.robot.estimate().T_map_base.xy

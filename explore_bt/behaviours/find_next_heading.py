@@ -12,6 +12,7 @@ from pydantic import Field
 
 from explore_bt.behaviours.give_up_goal import GivenUp
 from explore_bt.behaviours.marks import half_plane_marks, sector_mark
+from explore_bt.behaviours.share import claims_of_others
 from explore_bt.exploration import (
     FreeSector,
     HalfPlaneHistory,
@@ -96,6 +97,7 @@ class FindNextHeading(Leaf):
         if goal is None:
             return Status.FAILURE
         self.goal = goal
+        self.robot.team.claim([goal.position])
         return Status.SUCCESS
 
     def _looks(self, pose: Pose2, sectors: Iterable[FreeSector]) -> list[_Look]:
@@ -158,6 +160,9 @@ class FindNextHeading(Leaf):
         for place in self.given_up:
             if (away_m := math.dist(place.position, pose.xy)) < _GIVEN_UP_RADIUS_M:
                 return f"{away_m:.2f} m from a place given up before: {place.reason}"
+        for x, y in claims_of_others(self.robot, np.array([pose.xy])).tolist():
+            if (away_m := math.dist((x, y), pose.xy)) < self.detection_range:
+                return f"{away_m:.2f} m from where another robot goes"
         grid = self.robot.view().grid
         needed_m = self.robot.footprint_radius_m + self.margin
         clearance_m = float(clearance_at(grid, np.array([pose.xy]), needed_m)[0])

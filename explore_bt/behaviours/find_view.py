@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from explore_bt.behaviours.give_up_goal import GivenUp
 from explore_bt.behaviours.marks import half_plane_marks, sector_mark
 from explore_bt.behaviours.search import HERE_M, Search
+from explore_bt.behaviours.share import allotted, claims_of_others, free_at, workers
 from explore_bt.exploration import (
     HalfPlaneHistory,
     Outlooks,
@@ -52,9 +53,9 @@ class FindView(Search):
     seen, led by the one of greatest gain · exp(−λ travel) (González-Baños & Latombe, 2002); ``rank: gain``
     takes that one alone. Views that lie one behind another are one run: its last is the goal, the others are
     passed on the way (``detour``). A run is kept unless another tour is clearly better.
-    What other robots are about to see is left to them while there is anything else.
-    SUCCESS with the place in ``goal``; FAILURE once nothing of use is left in reach, with what stays open and
-    why in ``left_open``.
+    In a team, what others have claimed is as good as seen; the mission's allocator divides the rest.
+    SUCCESS with the place in ``goal``; FAILURE once nothing of use is left in reach, or nothing that is this
+    robot's, with what stays open and why in ``left_open``.
     """
 
     type_key = "find_view"
@@ -98,9 +99,6 @@ class FindView(Search):
     decay: Input[float] = Input(
         float, default=0.2, ge=0.0, doc="λ: how fast area loses worth with the way, 1/m"
     )
-    claimed: Input[tuple[tuple[float, float], ...]] = Input(
-        tuple, default=Key("claimed"), initial=(), doc="places that other robots go to look from"
-    )
     history: Input[HalfPlaneHistory] = Input(
         HalfPlaneHistory,
         default=Key("half_planes"),
@@ -110,6 +108,7 @@ class FindView(Search):
 
     def update(self) -> Status:
         """The best place; far off thinned ones while those show any, and tight ones at last."""
+        self._left_to_others = 0
         self._note_look_in_vain()
         least_m = self.robot.least_margin_m
         more = self._further_places()
@@ -134,7 +133,10 @@ class FindView(Search):
                 self._give_up_look(run[0].xy, run[0].gain_m2)
         self._draw_views((), chosen.views)
         scraps = ((view.xy, _TOO_LITTLE) for view in chosen.views)
+        self.robot.team.claim(())
         reason = f"no reachable place shows {self.min_gain:.2f} m² of new area or more"
+        if self._left_to_others:
+            reason = f"what is left is left to others: {self._left_to_others} views"
         return self.conclude(reason, (*self._still_unseen(), *scraps))
 
     @property
@@ -168,11 +170,20 @@ class FindView(Search):
         tried = np.array([place.position for place in self.tried()]).reshape(-1, 2)
         places = places.without(tried)
         about = (places, self._outlooks, self.robot.lidar_range_m, self._taste, self._present_run)
-        if self.claimed:
-            unclaimed = choose_views(*about, np.array(self.claimed))
-            if unclaimed.views:
-                return unclaimed
-        return choose_views(*about)
+        mates = workers(self.robot)
+        begin = np.array([free_at(mate) for mate in mates]).reshape(-1, 2)
+        chosen = choose_views(*about, claims_of_others(self.robot, self._present_run), begin)
+        if not mates or not chosen.views:
+            return chosen
+        kept = np.array([self._is_kept(view) for view in chosen.views])
+        gains = [view.gain_m2 for view in chosen.views]
+        mine = allotted(self.robot, mates, gains, chosen.between_m, chosen.from_others_m, kept)
+        self._left_to_others = len(gains) - len(mine)
+        return chosen.only(mine)
+
+    def _is_kept(self, view: View) -> bool:
+        run = self._present_run
+        return bool(len(run)) and bool((np.hypot(*(run - view.xy).T) < HERE_M).any())
 
     @property
     def _present_run(self) -> NDArray[np.float64]:
@@ -225,6 +236,7 @@ class FindView(Search):
         (x, y), before = last.xy, passed[-1].xy if passed else self.here().xy
         pose = Pose2(x, y, math.atan2(y - before[1], x - before[0]))
         self.goal = Waypoint(pose, "view", last.gain_m2, via=tuple(view.xy for view in passed))
+        self.robot.team.claim([view.xy for view in run])
         self._draw_views(run, views)
         over = f" over {len(passed)} other{'' if len(passed) == 1 else 's'}" if passed else ""
         self.say(

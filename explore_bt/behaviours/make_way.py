@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 
+from explore_bt.behaviours.mates import course_of, mate_in_the_way, needed_apart_m
 from explore_bt.behaviours.people import someone_is_in_the_way, who_is_near
 from explore_bt.errors import ComponentFailure, PlanningFailure
-from explore_bt.exploration import find_refuge, gap_to_courses_m
+from explore_bt.exploration import find_refuge, find_sidestep, gap_to_courses_m
 from explore_bt.interfaces import ControlStatus
 from explore_bt.tree import Input, Key, Leaf, Status
-from explore_bt.types import Pose2, Waypoint
+from explore_bt.types import Mate, Pose2, Waypoint
 from explore_bt.units import Duration, Length
 
 __all__ = ["MakeWay"]
@@ -19,12 +20,17 @@ __all__ = ["MakeWay"]
 _MARGIN_M = 0.05
 _APART_M = 0.3
 _SAME_M = 0.3
+_HERE_M = 0.1
+_MATE_CHANCES = 4
+_INSIST_S, _ASK_S = 30.0, 2.0
 
 
 class MakeWay(Leaf):
     """Drives to a near place beside the courses of those who come, a side branch of a corridor, and waits.
 
-    Where no place is better than the one it stands on it waits there.
+    Where no place is better than the one it stands on it waits there. For a team mate, whose path is known,
+    that is a place off that path, up to ``for_mates`` away, until it has passed; where there is none the
+    robot asks for the way itself.
     SUCCESS as soon as nobody is near or comes nearer, or after ``patience``. FAILURE if nobody was in the
     way, or the same goal has been stood aside from ``chances`` times: it may be the building after all.
     """
@@ -38,6 +44,10 @@ class MakeWay(Leaf):
     goal: Input[Waypoint] = Input(Waypoint, default=Key("goal"), doc="the goal that was not come to")
     chances: Input[int] = Input(int, default=5, ge=1, doc="how often for the same goal in a row")
     patience: Input[float] = Input(Duration, default=10.0, ge=0.0, doc="how long to wait at most")
+    for_mates: Input[float] = Input(Length, default=15.0, ge=0.1, doc="how far aside for a team mate")
+    mate_patience: Input[float] = Input(
+        Duration, default=40.0, ge=0.0, doc="how long to drive aside and wait for a team mate at most"
+    )
 
     keeps = ("_given",)
 
@@ -45,9 +55,14 @@ class MakeWay(Leaf):
 
     def initialise(self) -> None:
         """Look for a place."""
-        self._until_s = self.robot.now_s() + self.patience
+        self._mate = mate_in_the_way(self.robot)
+        self._held_at = self.robot.estimate().T_map_base.xy
+        patience_s = self.patience if self._mate is None else self.mate_patience
+        self._until_s = self.robot.now_s() + patience_s
         self._makes_way = self._is_needed()
-        self._is_driving = self._makes_way and self._step_aside()
+        self._is_driving = self._makes_way and (
+            self._step_aside() if self._mate is None else self._leave_course(self._mate)
+        )
 
     def update(self) -> Status:
         """Until the way is free."""
@@ -57,7 +72,7 @@ class MakeWay(Leaf):
             self._is_driving = False
             self.robot.pilot.hold()
         if self.robot.now_s() >= self._until_s:
-            self.say(f"still not alone after {self.patience:.0f} s; on")
+            self.say("has waited long enough; on")
             return Status.SUCCESS
         if not self._is_driving and self._is_free():
             self.say("the way is free")
@@ -70,14 +85,14 @@ class MakeWay(Leaf):
 
     def _is_needed(self) -> bool:
         self.say("")  # if nobody is, this is no reason for anything
-        if not someone_is_in_the_way(self.robot):
+        if self._mate is None and not someone_is_in_the_way(self.robot):
             return False
         place, count = self._given
         count = count + 1 if math.dist(place, self.goal.position) < _SAME_M else 1
         self._given = (self.goal.position, count)
         if count > self.chances:
-            self.say(f"has stood aside {self.chances} times for this goal")
-        return count <= self.chances
+            self.say(f"has stood aside {count - 1} times for this goal")
+        return count <= self.chances * (1 if self._mate is None else _MATE_CHANCES)
 
     def _step_aside(self) -> bool:
         view, robot = self.robot.view(), self.robot
@@ -103,11 +118,48 @@ class MakeWay(Leaf):
         self.say(f"{path.length_m:.1f} m aside, to ({place[0]:.1f}, {place[1]:.1f})")
         return True
 
+    def _leave_course(self, mate: Mate) -> bool:
+        """Drive off its path; where no place is, ask for the way."""
+        view, robot = self.robot.view(), self.robot
+        here = robot.estimate().T_map_base
+        course, apart_m = course_of(mate), needed_apart_m(robot, mate)
+        radius_m = robot.footprint_radius_m + _MARGIN_M
+        place = find_sidestep(
+            view.grid, view.clearance_m, here.xy, radius_m, course, apart_m, most_way_m=self.for_mates
+        )
+        if place is None:
+            robot.team.insist(robot.now_s() + _INSIST_S)
+            self.say(f"no place off {mate.name}'s way: asks it to yield")
+            self._until_s = robot.now_s() + _ASK_S
+            return False
+        if math.dist(place, here.xy) < _HERE_M:
+            self.say(f"off {mate.name}'s way already")
+            return False
+        yaw = math.atan2(place[1] - here.y, place[0] - here.x)
+        try:
+            path = robot.plan(Pose2(*place, yaw))
+        except (PlanningFailure, ComponentFailure) as refusal:
+            self.say(f"waiting here: no way aside, {refusal}")
+            return False
+        robot.pilot.follow(path)
+        self.say(f"{path.length_m:.1f} m off {mate.name}'s way, to ({place[0]:.1f}, {place[1]:.1f})")
+        return True
+
+    def _has_passed(self, before: Mate) -> bool:
+        """It is gone, or neither it nor its way comes near where the robot was held."""
+        mate = next((each for each in self.robot.team.mates if each.name == before.name), None)
+        if mate is None:
+            return True
+        off_m = np.hypot(*(course_of(mate) - self._held_at).T).min()
+        return bool(off_m > needed_apart_m(self.robot, mate) + _APART_M)
+
     def _has_come(self) -> bool:
         """There, or held on the way."""
         return self.robot.pilot.output.status in (ControlStatus.ARRIVED, ControlStatus.STUCK)
 
     def _is_free(self) -> bool:
+        if self._mate is not None:
+            return self._has_passed(self._mate)
         here = self.robot.estimate().T_map_base
         near = who_is_near(self.robot, here, self.robot.footprint_radius_m + self.clear)
         gap_m = float(gap_to_courses_m(np.array([here.xy]), near)[0])

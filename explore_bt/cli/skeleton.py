@@ -14,7 +14,7 @@ from explore_bt.errors import UserError
 
 __all__ = ["KINDS", "check_kind", "check_name", "write_skeleton"]
 
-KINDS = ("driver", "slam", "planner", "controller", "behaviour", "sink", "exporter")
+KINDS = ("driver", "slam", "planner", "controller", "team", "allocator", "behaviour", "sink", "exporter")
 """Kinds with a template: all of them (a test compares), without importing the contracts."""
 
 _USAGE = {
@@ -22,6 +22,8 @@ _USAGE = {
     "slam": "A mission uses it with `slam: {use: my_plugin}`.",
     "planner": "A mission uses it with `planner: {use: my_plugin}`.",
     "controller": "A mission uses it with `controller: {use: my_plugin}`.",
+    "team": "A mission of several robots uses it with `team: {use: my_plugin}`.",
+    "allocator": "A mission of several robots uses it with `allocator: {use: my_plugin}`.",
     "behaviour": "A mission's tree uses it with `my_plugin: {distance: 2 m}`.",
     "sink": "A run uses it with `explore-bt run MISSION --sink my_plugin`.",
     "exporter": "Every run uses it: its file lies beside the map.",

@@ -45,6 +45,7 @@ from explore_bt.exploration.refuge import find_refuge, gap_to_courses_m
 from explore_bt.exploration.remains import sentences, what_remains
 from explore_bt.exploration.retrace import way_back
 from explore_bt.exploration.revisit import is_allowed, repeated_visit
+from explore_bt.exploration.sidestep import find_sidestep
 from explore_bt.exploration.tour import open_tour
 from explore_bt.exploration.travel import Travel, nearest_reaching_cell, travel_field, way_lengths
 from explore_bt.exploration.view_places import ViewPlaces
@@ -75,6 +76,7 @@ __all__ = [
     "find_free_sectors",
     "find_frontiers",
     "find_refuge",
+    "find_sidestep",
     "first_run",
     "frontier_mask",
     "gain_many",

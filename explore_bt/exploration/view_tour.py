@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
@@ -20,6 +20,8 @@ _KEPT_WORTH = 1.5
 _BEYOND_M = 10.0
 _APART_M = 1e3
 _SAME_M = 0.1
+_MORE_FOR_EACH = 4
+"""So many views more for every other robot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +53,23 @@ class ViewSet:
         views: near ones first; none where no place shows enough.
         between_m: (N + 1, N + 1) metres between the robot (first) and them.
         total_m2: what all places in reach show, also those beyond the horizon.
+        from_others_m: (R, N) metres between R other robots and them.
     """
 
     views: tuple[View, ...]
     between_m: NDArray[np.float64]
     total_m2: float
+    from_others_m: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def only(self, numbers: Sequence[int]) -> ViewSet:
+        """Some of the views, by their indices."""
+        rows = [0, *(number + 1 for number in numbers)]
+        return ViewSet(
+            tuple(self.views[number] for number in numbers),
+            self.between_m[np.ix_(rows, rows)],
+            self.total_m2,
+            self.from_others_m[:, list(numbers)],
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,10 +122,11 @@ def choose_views(
     taste: TourTaste,
     kept_xy: NDArray[np.float64] | None = None,
     claimed_xy: NDArray[np.float64] | None = None,
+    others_xy: NDArray[np.float64] | None = None,
 ) -> ViewSet:
     """Few views that together show what the places can show, near ones first.
 
-    Greedy set cover, where a set costs the way to it from the nearest view chosen so far (or the robot).
+    Greedy set cover, where a set costs the way to it from the nearest view chosen so far (or a robot).
 
     Args:
         places: where the robot may look from.
@@ -120,15 +135,19 @@ def choose_views(
         taste: see there.
         kept_xy: (K, 2) metres, the present goal and the places on the way; they count half as much again.
         claimed_xy: (K, 2) metres, places that others go to: what they show is as good as seen.
+        others_xy: (R, 2) metres, where other robots begin that views are to be found for, too.
     """
+    others = [] if others_xy is None else [_ways_from(places, xy) for xy in others_xy]
     nothing = ViewSet((), np.zeros((1, 1)), 0.0)
     if not len(places.blocks):
         return nothing
     min_patch_m2 = 0.5 * taste.min_gain_m2
     outlook, cell_m2, size = places.look(outlooks, range_m, taste.depth_m, min_patch_m2)
     active = np.diff(outlook.begin) * cell_m2 >= taste.min_gain_m2
-    near = places.travel_m
-    active &= np.isfinite(near)
+    active &= np.isfinite(places.travel_m)
+    near = np.min(
+        [field[tuple(places.way_blocks.T)] for field in (places.reach.from_here_m, *others)], axis=0
+    )
     if not active.any():
         return nothing
     total_m2 = float(np.count_nonzero(_cover(outlook, active, size))) * cell_m2
@@ -140,7 +159,7 @@ def choose_views(
     covered = np.zeros(size, dtype=np.bool_)
     if claimed_xy is not None and len(claimed_xy):
         covered[places.look_from(claimed_xy, outlooks, range_m, taste.depth_m, min_patch_m2).cells] = True
-    while len(views) < taste.most:
+    while len(views) < taste.most + _MORE_FOR_EACH * len(others):
         gain_m2 = _count_new(outlook.begin, outlook.cells, covered, active) * cell_m2
         active &= gain_m2 >= taste.min_gain_m2
         if not active.any():
@@ -153,7 +172,25 @@ def choose_views(
         active[best] = False
         fields.append(places.reach.ways_m((row, col), 2.0 * horizon_m))
         near = np.minimum(near, fields[-1][tuple(places.way_blocks.T)])
-    return ViewSet(tuple(views), _between(fields, views), total_m2)
+    if not views:
+        return ViewSet((), np.zeros((1, 1)), total_m2)
+    return ViewSet(tuple(views), _between(fields, views), total_m2, _to_views(others, views))
+
+
+def _ways_from(places: ViewPlaces, xy: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Metres from another robot to each block that ways are measured over; nothing where it cannot be."""
+    ground = places.reach.ground
+    block = places.reach.way_block_of(ground.block_of(xy[None]))[0]
+    rows, cols = places.reach.from_here_m.shape
+    if not (0 <= block[0] < rows and 0 <= block[1] < cols):
+        return np.full((rows, cols), np.inf, dtype=np.float32)
+    return places.reach.ways_m((int(block[0]), int(block[1])))
+
+
+def _to_views(fields: list[NDArray[np.float32]], views: list[View]) -> NDArray[np.float64]:
+    rows, cols = np.array([view.block for view in views]).T
+    ways_m = np.array([ways[rows, cols] for ways in fields], dtype=np.float64).reshape(-1, len(views))
+    return np.where(np.isfinite(ways_m), ways_m, _APART_M)
 
 
 def _cover(outlook: Outlook, active: NDArray[np.bool_], size: int) -> NDArray[np.bool_]:
@@ -176,8 +213,8 @@ def _seen(outlook: Outlook, place: int) -> NDArray[np.int32]:
 def _between(fields: list[NDArray[np.float32]], views: list[View]) -> NDArray[np.float64]:
     rows, cols = np.array([view.block for view in views]).T
     between = np.zeros((len(fields), len(fields)))
-    for row, field in enumerate(fields):
-        between[row, 1:] = field[rows, cols]
+    for row, ways_m in enumerate(fields):
+        between[row, 1:] = ways_m[rows, cols]
     return np.where(np.isfinite(between), between, _APART_M)
 
 

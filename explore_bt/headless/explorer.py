@@ -11,7 +11,7 @@ from explore_bt.exploration.arguments import require_at_least, require_positive
 from explore_bt.headless.decision import Decision
 from explore_bt.headless.explorer_robot import ExplorerRobot
 from explore_bt.headless.grid_robot import GridRobot
-from explore_bt.headless.strategies import make_planner, read_strategy
+from explore_bt.headless.strategies import make_allocator, make_planner, read_strategy
 from explore_bt.plugin import load_plugins
 from explore_bt.types import OccupancyGrid, Pose2
 
@@ -70,7 +70,7 @@ class Explorer:
             grid: the newest map, of any resolution; it may have grown since. Its cells are frozen from then
                 on: give a copy of an array that is still being written.
             pose: where the robot is, ``map`` frame; or a pose for each of several robots by name. They share
-                the map, and ``complete`` and ``information_gain`` leave to each what it is about to see.
+                the map, and what is left to see is divided between them by an auction.
 
         Returns:
             The decision, or one for each robot.
@@ -78,16 +78,16 @@ class Explorer:
         if isinstance(pose, Pose2):
             return self._robot(_ALONE).decide(grid, pose)
         robots = {name: self._robot(name) for name in pose}
-        return {name: robots[name].decide(grid, pose[name], _goals_but(name, robots)) for name in pose}
+        return {
+            name: robot.decide(
+                grid, pose[name], tuple(robots[other].as_mate(pose[other]) for other in pose if other != name)
+            )
+            for name, robot in robots.items()
+        }
 
     def _robot(self, name: str) -> ExplorerRobot:
         if name not in self._robots:
             planner = make_planner(self._registry, self._radius_m, self._safety_weight)
-            body = GridRobot(name, planner, self._radius_m, self._range_m)
+            body = GridRobot(name, planner, self._radius_m, self._range_m, make_allocator(self._registry))
             self._robots[name] = ExplorerRobot(body, self._tree)
         return self._robots[name]
-
-
-def _goals_but(name: str, robots: Mapping[str, ExplorerRobot]) -> tuple[tuple[float, float], ...]:
-    goals = (robot.goal_xy for other, robot in robots.items() if other != name)
-    return tuple(goal for goal in goals if goal is not None)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from explore_bt.headless.decision import Decision
 from explore_bt.headless.grid_robot import GridRobot
 from explore_bt.mission import NodeSpec, build_tree
 from explore_bt.tree import Blackboard, Status
-from explore_bt.types import OccupancyGrid, Path, Pose2, Waypoint
+from explore_bt.types import Doing, Mate, OccupancyGrid, Path, Pose2, Twist2, Waypoint
 
 __all__ = ["ExplorerRobot"]
 
@@ -22,20 +24,22 @@ class ExplorerRobot:
         self._tree = build_tree(tree, body, self._blackboard)
         self._over: Decision | None = None
 
-    @property
-    def goal_xy(self) -> tuple[float, float] | None:
-        """Where the robot is sent; None before the first decision and once it is over."""
-        goal = None if self._over else self._blackboard.get("goal")
-        return goal.position if isinstance(goal, Waypoint) else None
+    def as_mate(self, pose: Pose2) -> Mate:
+        """What the others are told of it."""
+        doing = Doing.OVER if self._over else self._body.team.doing
+        claims = () if self._over else self._body.team.claims
+        stamp_s, nowhere = self._body.now_s(), np.empty((0, 2))
+        radius_m = self._body.footprint_radius_m
+        return Mate(
+            self._body.name, stamp_s, stamp_s, pose, Twist2(), radius_m, 0.0, nowhere, nowhere, claims, doing
+        )
 
-    def decide(
-        self, grid: OccupancyGrid, pose: Pose2, claimed: tuple[tuple[float, float], ...] = ()
-    ) -> Decision:
-        """Tell the tree where the robot is, and where others go; once over, it stays over."""
+    def decide(self, grid: OccupancyGrid, pose: Pose2, mates: tuple[Mate, ...] = ()) -> Decision:
+        """Tell the tree where the robot is, and what the others are about; once over, it stays over."""
         if self._over is not None:
             return self._over
         self._body.report(grid, pose)
-        self._blackboard.write("claimed", claimed)
+        self._body.team.mates = mates
         for _ in range(_MOST_TICKS):
             self._tree.root.tick_once()
             if self._tree.root.status is not Status.RUNNING:

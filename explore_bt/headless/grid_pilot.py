@@ -29,6 +29,7 @@ class GridPilot:
     blocked_s = 0.0
     gate_reason = ""
     held_by = HeldBy.OBSTACLE
+    in_the_way = ""
 
     def __init__(self) -> None:
         self.path: Path | None = None

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from explore_bt.exploration import scan_of_grid
+from explore_bt.fleet import Alone
 from explore_bt.headless.grid_pilot import GridPilot
-from explore_bt.interfaces import MapMemory, MapView, Planner
+from explore_bt.interfaces import Allocator, MapMemory, MapView, Planner
 from explore_bt.runtime.legs import plan_through
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.types import (
@@ -41,7 +42,14 @@ class GridRobot:
     moving: tuple[MovingObstacle, ...] = ()
     least_margin_m = _GRAZE_M
 
-    def __init__(self, name: str, planner: Planner, footprint_radius_m: float, lidar_range_m: float) -> None:
+    def __init__(
+        self,
+        name: str,
+        planner: Planner,
+        footprint_radius_m: float,
+        lidar_range_m: float,
+        allocator: Allocator | None = None,
+    ) -> None:
         self.name = name
         self.footprint_radius_m = footprint_radius_m
         self.lidar_range_m = lidar_range_m
@@ -54,6 +62,7 @@ class GridRobot:
         self._view: MapView | None = None
         self._map_memory = MapMemory()
         self._tight = TightPlaces()
+        self.team = Alone(name, allocator)
         self._scan: Scan2D | None = None
         self._track: list[Pose2] = []
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from explore_bt.errors import UserError
 from explore_bt.files import missions_folder
-from explore_bt.interfaces import Planner, RobotContext
+from explore_bt.interfaces import Allocator, Planner, RobotContext
 from explore_bt.mission import NodeSpec, load_tree
 from explore_bt.plugin import Registry
 
-__all__ = ["STRATEGIES", "make_planner", "read_strategy"]
+__all__ = ["STRATEGIES", "make_allocator", "make_planner", "read_strategy"]
 
 _ROOMY_M = 1.5
 STRATEGIES = ("complete", "paper", "nearest_frontier", "information_gain", "tour")
@@ -51,3 +51,9 @@ def make_planner(registry: Registry, footprint_radius_m: float, safety_weight: f
     planner = cls(cls.Options.model_validate(taste))
     planner.setup(RobotContext(footprint_radius_m=footprint_radius_m))
     return planner
+
+
+def make_allocator(registry: Registry) -> Allocator:
+    """The allocator ``auction``, which divides the work where there are several robots."""
+    cls: type[Allocator] = registry.get("allocator", "auction")
+    return cls(cls.Options())

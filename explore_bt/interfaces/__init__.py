@@ -1,5 +1,6 @@
 """The contracts: one abstract class per plugin kind, and the values only they exchange."""
 
+from explore_bt.interfaces.allocator import Allocator, Offers
 from explore_bt.interfaces.commons import Commons
 from explore_bt.interfaces.controller import Controller, ControlOutput, ControlStatus
 from explore_bt.interfaces.driver import Driver
@@ -21,10 +22,13 @@ from explore_bt.interfaces.snapshot import (
     TickSnapshot,
 )
 from explore_bt.interfaces.surroundings import Surroundings
+from explore_bt.interfaces.team import Letter, Team
+from explore_bt.interfaces.team_services import TeamServices
 from explore_bt.interfaces.truth import GroundTruth
 
 __all__ = [
     "API_VERSION",
+    "Allocator",
     "Commons",
     "ControlOutput",
     "ControlStatus",
@@ -34,10 +38,12 @@ __all__ = [
     "Exporter",
     "GroundTruth",
     "HeldBy",
+    "Letter",
     "MapMemory",
     "MapView",
     "NodeInfo",
     "NodeState",
+    "Offers",
     "Pilot",
     "Planner",
     "Playback",
@@ -54,6 +60,8 @@ __all__ = [
     "Sink",
     "Slam",
     "Surroundings",
+    "Team",
+    "TeamServices",
     "TickSnapshot",
     "never",
 ]

@@ -13,5 +13,6 @@ class HeldBy(enum.StrEnum):
     NOTHING = "nothing"
     OBSTACLE = "an obstacle"
     SOMEONE = "someone who moves"
+    MATE = "a team mate"
     SENSES = "senses that fail"
     DEBUGGER = "the debugger"

@@ -13,6 +13,7 @@ from explore_bt.exploration.clearance import Clearances
 from explore_bt.exploration.ground import Ground, GroundMemory
 from explore_bt.interfaces.controller import ControlOutput
 from explore_bt.interfaces.held_by import HeldBy
+from explore_bt.interfaces.team_services import TeamServices
 from explore_bt.types import (
     Budget,
     Drawing,
@@ -79,6 +80,10 @@ class Pilot(Protocol):
     def held_by(self) -> HeldBy:
         """What the robot is being braked for."""
 
+    @property
+    def in_the_way(self) -> str:
+        """The name of the team mate that the robot was last held for; empty before."""
+
 
 class RobotServices(Protocol):
     """Given to every leaf at construction; valid to use from ``initialise`` on."""
@@ -108,6 +113,10 @@ class RobotServices(Protocol):
         """The way to the wheels."""
 
     @property
+    def team(self) -> TeamServices:
+        """Its place among the robots of the mission."""
+
+    @property
     def stop_requested(self) -> bool:
         """The paper's ``stop_exploration``."""
 
@@ -132,7 +141,7 @@ class RobotServices(Protocol):
         """The way driven so far, ``map`` frame, as SLAM believes it now."""
 
     def view(self) -> MapView:
-        """The newest map."""
+        """The newest map; where the robot has seen nothing itself, what its team has seen."""
 
     def scan(self) -> Scan2D | None:
         """The newest scan, None before the first."""

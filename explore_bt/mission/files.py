@@ -25,6 +25,8 @@ MISSION_KEYS = (
     "include",
     "plugins",
     "robots",
+    "team",
+    "allocator",
     "tick",
     "limits",
     "tree",

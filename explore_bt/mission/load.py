@@ -22,7 +22,7 @@ from explore_bt.mission.param_section import read_params
 from explore_bt.mission.params import PLUGIN_KINDS, Param
 from explore_bt.mission.reading import expect_entries, expect_items, expect_text, is_null, written
 from explore_bt.mission.references import Scope, resolve
-from explore_bt.mission.robots import read_robot, unknown_plugin
+from explore_bt.mission.robots import read_robot, read_team, unknown_plugin
 from explore_bt.mission.source import Place
 from explore_bt.mission.tree_reader import TreeReader
 from explore_bt.mission.wiring import check_wiring
@@ -123,6 +123,9 @@ class _Loader:
         limits = read_limits(sections["limits"], self._text.source.folder, self._faults)
         tree_hz, control_hz = read_tick(sections["tick"], self._text.source.folder, self._faults)
         robots = self._robots(params)
+        team = read_team(
+            self._root, len(robots) > 1, Scope(params, self._environ), self._catalog, self._faults
+        )
         self._faults.raise_if_any()
         return Mission(
             name=name,
@@ -139,6 +142,7 @@ class _Loader:
             declared=declared,
             sources={each.name: each.text for each in (self._text.source, *self._text.included.values())},
             texts=_texts(path, self._text),
+            team=team,
         )
 
     def _name(self, path: Path) -> str:

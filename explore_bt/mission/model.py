@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from explore_bt.interfaces import Controller, Driver, Planner, Plugin, PluginOptions, Slam
+from explore_bt.interfaces import Allocator, Controller, Driver, Planner, Plugin, PluginOptions, Slam, Team
 from explore_bt.mission.limits import LimitsSpec
 from explore_bt.mission.nodes import NodeSpec
 from explore_bt.mission.params import Param
 from explore_bt.types import Pose2
 
-__all__ = ["Mission", "PluginChoice", "RobotSpec"]
+__all__ = ["Mission", "PluginChoice", "RobotSpec", "TeamSpec"]
 
 P = TypeVar("P", bound=Plugin)
 
@@ -53,6 +53,14 @@ class RobotSpec:
 
 
 @dataclass(frozen=True, slots=True)
+class TeamSpec:
+    """How the robots of a mission hear one another, and who divides the work."""
+
+    team: PluginChoice[Team]
+    allocator: PluginChoice[Allocator]
+
+
+@dataclass(frozen=True, slots=True)
 class Mission:
     """What a mission file says, checked.
 
@@ -67,6 +75,7 @@ class Mission:
         texts: real path -> text, of the file and the included ones.
         settings: the overrides, ``name=value``; relative files in them are relative to ``settings_folder``.
         control_rate_hz: a whole multiple of ``tree_rate_hz``.
+        team: None for a robot that is alone.
     """
 
     name: str
@@ -85,3 +94,4 @@ class Mission:
     texts: Mapping[Path, str] = field(default_factory=dict)
     settings: tuple[str, ...] = ()
     settings_folder: Path = Path()
+    team: TeamSpec | None = None

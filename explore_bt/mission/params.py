@@ -57,7 +57,17 @@ PARAM_TYPES: Mapping[str, Any] = {
 }
 """Name in a mission -> what its values are validated against."""
 
-PLUGIN_KINDS = ("driver", "slam", "planner", "controller", "sink", "exporter", "behaviour")
+PLUGIN_KINDS = (
+    "driver",
+    "slam",
+    "planner",
+    "controller",
+    "team",
+    "allocator",
+    "sink",
+    "exporter",
+    "behaviour",
+)
 PARAM_KEYS = ("type", "default", "min", "max", "choices", "kind", "doc")
 _TEXTS = ("text", "choice", "file", "plugin")
 

@@ -10,13 +10,13 @@ from typing import Any, cast
 from pydantic import TypeAdapter
 
 from explore_bt.errors import PluginError
-from explore_bt.interfaces import Controller, Driver, Planner, Slam
+from explore_bt.interfaces import Allocator, Controller, Driver, Planner, Slam, Team
 from explore_bt.mission.bounds import Asked
 from explore_bt.mission.catalog import PluginCatalog
 from explore_bt.mission.checking import check_model, check_value
 from explore_bt.mission.document import Entries, Entry, Scalar, Value
 from explore_bt.mission.faults import Faults
-from explore_bt.mission.model import PluginChoice, RobotSpec
+from explore_bt.mission.model import PluginChoice, RobotSpec, TeamSpec
 from explore_bt.mission.nodes import NodeSpec
 from explore_bt.mission.reading import check_keys, expect_entries, written
 from explore_bt.mission.references import BROKEN, Scope, resolve
@@ -25,9 +25,10 @@ from explore_bt.mission.words import did_you_mean
 from explore_bt.types import Pose2
 from explore_bt.units import FilePath, PoseTriple
 
-__all__ = ["PLUGINS", "ROBOT_KEYS", "read_robot", "unknown_plugin"]
+__all__ = ["PLUGINS", "ROBOT_KEYS", "TEAM_PLUGINS", "read_robot", "read_team", "unknown_plugin"]
 
 PLUGINS = ("driver", "slam", "planner", "controller")
+TEAM_PLUGINS = ("team", "allocator")
 ROBOT_KEYS = ("start", "map", *PLUGINS, "tree", "doc")
 _ROBOT_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
@@ -72,6 +73,30 @@ def read_robot(
         cast(PluginChoice[Controller], controller),
         tree,
     )
+
+
+_USUAL = {"team": "local", "allocator": "auction"}
+
+
+def read_team(
+    root: Entries, several: bool, scope: Scope, catalog: PluginCatalog, faults: Faults
+) -> TeamSpec | None:
+    """The keys ``team`` and ``allocator`` of a mission; with several robots they may be left out."""
+    is_asked_for = any(root.get(kind) is not None for kind in TEAM_PLUGINS)
+    if not is_asked_for and not (several and all(_USUAL[kind] in catalog.names(kind) for kind in _USUAL)):
+        return None
+    choices = []
+    for kind in TEAM_PLUGINS:
+        entry = root.by_key.get(kind)
+        if entry is None:
+            usual = Scalar(_USUAL[kind], _USUAL[kind], True, root.place)
+            entry = Entry(kind, root.place, usual)
+        resolved = Entry(kind, entry.place, resolve(entry.value, scope, faults))
+        choices.append(_choose(kind, resolved, entry, catalog, faults))
+    team, allocator = choices
+    if team is None or allocator is None:
+        return None
+    return TeamSpec(cast(PluginChoice[Team], team), cast(PluginChoice[Allocator], allocator))
 
 
 def _given(value: Value | None, scope: Scope, faults: Faults) -> Value | None:

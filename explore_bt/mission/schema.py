@@ -13,7 +13,7 @@ from explore_bt.mission.files import FORMAT
 from explore_bt.mission.limits import LimitsModel, TickModel
 from explore_bt.mission.nodes import CONTROL_NODES, MODIFIERS
 from explore_bt.mission.params import PARAM_TYPES, PLUGIN_KINDS
-from explore_bt.mission.robots import PLUGINS
+from explore_bt.mission.robots import PLUGINS, TEAM_PLUGINS
 from explore_bt.mission.words import quantity
 from explore_bt.tree import REQUIRED, Input, Key, Leaf, Output
 from explore_bt.units import Duration, PoseTriple
@@ -46,6 +46,7 @@ def mission_schema(catalog: PluginCatalog) -> Schema:
                 "doc": {"type": "string"},
                 "params": {"type": "object", "additionalProperties": {"$ref": "#/$defs/param"}},
                 "include": {"type": "array", "items": {"type": "string"}},
+                **{kind: _plugins(catalog, kind) for kind in TEAM_PLUGINS},
                 "plugins": {"type": "array", "items": {"type": "string", "pattern": "^[a-z]+/.+$"}},
                 "robots": {
                     "type": "object",

@@ -8,6 +8,7 @@ import re
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import (
     API_VERSION,
+    Allocator,
     Controller,
     Driver,
     Exporter,
@@ -15,13 +16,15 @@ from explore_bt.interfaces import (
     PluginOptions,
     Sink,
     Slam,
+    Team,
 )
 from explore_bt.tree import Leaf
 
 __all__ = ["CONTRACTS", "KINDS", "check_class", "kind_of", "name_of"]
 
 CONTRACTS: dict[str, type] = {
-    contract.kind: contract for contract in (Driver, Slam, Planner, Controller, Leaf, Sink, Exporter)
+    contract.kind: contract
+    for contract in (Driver, Slam, Planner, Controller, Team, Allocator, Leaf, Sink, Exporter)
 }
 """Kind -> the class to derive from."""
 

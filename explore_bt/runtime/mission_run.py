@@ -11,7 +11,9 @@ from pathlib import Path
 from explore_bt.checkpoint import CheckpointStore
 from explore_bt.errors import UserError
 from explore_bt.files import write_whole
+from explore_bt.fleet import merged_map
 from explore_bt.interfaces import Commons, Event, RobotProduct, RunInfo, Sink
+from explore_bt.maps import write_map
 from explore_bt.mission import Mission
 from explore_bt.plugin import Registry
 from explore_bt.runtime.attendant import Attendant
@@ -205,7 +207,10 @@ def _sum_of_known(counts: Iterable[int | None]) -> int | None:
 
 
 def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Path) -> None:
-    """Every exporter for every robot; one robot writes into the folder itself, several into their own."""
+    """Every exporter for every robot; one robot writes into the folder itself, several into their own.
+
+    The map of all lies in the folder itself.
+    """
     for robot in robots:
         folder = out if len(robots) == 1 else out / robot.name
         folder.mkdir(exist_ok=True)
@@ -218,3 +223,5 @@ def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Pa
             robot.slam.structure(),
         )
         export(registry, product, robot.slam, folder)
+    if len(robots) > 1:
+        write_map(merged_map([robot.slam for robot in robots]), out)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, HeldBy, Surroundings
 from explore_bt.runtime.pose_predictor import PosePredictor
 from explore_bt.runtime.safety_gate import SafetyGate
-from explore_bt.types import Estimate, Health, MotionState, Path, Scan2D, Twist2
+from explore_bt.types import Estimate, Health, Mate, MotionState, Path, Pose2, Scan2D, Twist2, way_along
 
 __all__ = ["Pilot"]
 
@@ -20,6 +23,8 @@ JUMP_RAD = math.radians(3.0)
 """More than a body strays from its commands between two scans: the estimate was corrected."""
 
 _REST = 1e-4
+_AHEAD_M, _AHEAD_STEP_M = 8.0, 0.25
+"""How much of its path a robot tells its team, and how finely."""
 
 
 class Pilot:
@@ -55,6 +60,34 @@ class Pilot:
         """Whether the last command was to stand still."""
         twist = self.motion.twist
         return abs(twist.linear_mps) < _REST and abs(twist.angular_rps) < _REST
+
+    @property
+    def mates(self) -> tuple[Mate, ...]:
+        """Team mates whose word is fresh; the gate keeps clear of where they stop."""
+        return self._gate.mates
+
+    @mates.setter
+    def mates(self, mates: tuple[Mate, ...]) -> None:
+        self._gate.mates = mates
+
+    @property
+    def in_the_way(self) -> str:
+        """The name of the team mate that the robot was last held for."""
+        return self._gate.in_the_way
+
+    def stop_places(self, here: Pose2, dt_s: float) -> NDArray[np.float64]:
+        """(N, 2) metres, ``map`` frame: where the robot passes if it brakes after the coming period."""
+        return self._gate.stop_places(self.motion, here, dt_s)
+
+    def places_ahead(self, here: Pose2) -> NDArray[np.float64]:
+        """(M, 2) metres: the next 8 m of the path; none without one."""
+        if self.path is None or self._output.status is ControlStatus.ARRIVED:
+            return np.empty((0, 2))
+        xy = self.path.poses[:, :2]
+        nearest = int(np.argmin(np.hypot(*(xy - here.xy).T)))
+        along_m = way_along(self.path.poses[nearest:])
+        stations = np.arange(0.0, min(along_m[-1], _AHEAD_M) + _AHEAD_STEP_M, _AHEAD_STEP_M)
+        return np.column_stack([np.interp(stations, along_m, xy[nearest:, axis]) for axis in (0, 1)])
 
     def follow(self, path: Path) -> None:
         """Drive along ``path`` from the next control step on."""

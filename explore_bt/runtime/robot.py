@@ -9,6 +9,7 @@ from dataclasses import replace
 from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
 from explore_bt.exploration import warm_up
+from explore_bt.fleet import Presence, TeamMap
 from explore_bt.interfaces import Commons, Event, MapMemory, MapView, RobotContext, RobotSnapshot
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
@@ -24,6 +25,8 @@ from explore_bt.runtime.senses import Senses
 from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.stop_flag import StopFlag
+from explore_bt.runtime.team_mate import standing, with_mates
+from explore_bt.runtime.team_place import team_place
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.runtime.way_finder import WayFinder
@@ -74,6 +77,8 @@ class Robot:
         self._commons = commons or Commons()
         self.driver = spec.driver.make()
         self.slam = spec.slam.make()
+        self.team_map = TeamMap(self.slam)
+        self.team = team_place(mission, self.name, self.slam, self.tell)
         self._planner = spec.planner.make()
         self._controller = spec.controller.make()
         self.blackboard = Blackboard()
@@ -83,7 +88,7 @@ class Robot:
         self._sketch = Sketch()
         self._view: MapView | None = None
         self._map_memory = MapMemory()
-        self._way_finder = WayFinder(self._planner, self.slam, stop)
+        self._way_finder = WayFinder(self._planner, self.team_map, stop)
         self._tight = TightPlaces()
         self._purse = Purse(mission.limits)
         self._faults = FaultLog(self.name, self.tell)
@@ -122,8 +127,10 @@ class Robot:
         if saved_map is not None:
             self.slam.load(saved_map)
         self._poses_before = cut.memory.poses_before if cut else len(self.slam.trajectory().stamps_s)
+        self.team.setup(context, self.team_map)
         self._planner.setup(context)
         self._controller.setup(context)
+        self._limits = limits
         gate = SafetyGate(self.driver.footprint_radius_m, limits)
         self.pilot = Pilot(self._controller, gate, self.driver)
         self.scores = Scorekeeper(self.home, context.truth)
@@ -187,8 +194,8 @@ class Robot:
         return Trajectory(whole.stamps_s[self._poses_before :], whole.poses[self._poses_before :])
 
     def view(self) -> MapView:
-        """The newest map, with the places that proved too tight closed."""
-        grid = self._tight.mark(self.slam.grid())
+        """The newest map, completed by the team's, with the places that proved too tight closed."""
+        grid = self._tight.mark(self.team_map.grid())
         if self._view is None or self._view.grid is not grid:
             self._view = MapView(grid, self._map_memory)
         return self._view
@@ -207,7 +214,8 @@ class Robot:
         straight_m = self.estimate().T_map_base.distance_to(goal)
         try:
             here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
-            grid = self.view().grid
+            around = standing(self.team.mates, here, goal, (self.team.yields, self.name))
+            grid = with_mates(self.view().grid, around, here, self.footprint_radius_m)
             path = plan_or_squeeze(
                 lambda radius_m: self._way_finder.path(grid, here, goal, via, radius_m),
                 self.footprint_radius_m,
@@ -244,6 +252,7 @@ class Robot:
     def sense(self) -> None:
         """Take in what the driver measured since the last time."""
         measurements = self._read()
+        self._hear_team()
         for measurement in measurements:
             self._take(measurement)
         if any(isinstance(measurement, Scan2D) for measurement in measurements):
@@ -252,6 +261,7 @@ class Robot:
 
     def act(self, now_s: float, dt_s: float) -> None:
         """One control period; a controller that breaks down is braked for."""
+        self._hear_team()  # those who have acted in this period already
         try:
             self.pilot.step(self.estimate(), self.scan(), now_s, dt_s)
         except Exception as error:  # any plugin's failure ends in a controlled stop, never in a crash
@@ -260,12 +270,15 @@ class Robot:
         if self.scan() is not None:  # before the first one there is nothing to drive by, nor to drive to
             self._news.of_gate(self.pilot, self._clock_s())
         self._keep_score(now_s, dt_s)
+        self._tell_team(now_s, dt_s)
 
     def hold(self, reason: str, now_s: float, dt_s: float) -> None:
         """One control period at rest, in place of ``act``; the tree's time stands still for as long."""
         self.pilot.pause(reason, now_s, dt_s)
         self._held_s += dt_s
         self._keep_score(now_s, dt_s)
+        self._hear_team()
+        self._tell_team(now_s, dt_s)
 
     def watch_ticks(self, probe: Probe) -> None:
         """Have ``probe`` asked before and after every tick of every node of the tree."""
@@ -297,6 +310,7 @@ class Robot:
     def close(self) -> None:
         """Stop the body and let go of it."""
         self.driver.close()
+        self.team.close()
 
     # --- for observers and checkpoints --------------------------------------------------------------
 
@@ -358,8 +372,20 @@ class Robot:
     def _take(self, measurement: Measurement) -> None:
         if isinstance(measurement, Battery):
             self._purse.take(measurement)
-        elif self._senses.take(measurement):
+        elif self._senses.take(measurement, self.pilot):
             self._keeping.hear(measurement)
+
+    def _hear_team(self) -> None:
+        self.team.receive(self._clock_s())
+        self.pilot.mates = self._senses.mates = self.team.near
+
+    def _tell_team(self, now_s: float, dt_s: float) -> None:
+        here = self.pilot.predict(self.estimate(), now_s).T_map_base
+        stop, ahead = self.pilot.stop_places(here, dt_s), self.pilot.places_ahead(here)
+        speed_mps = self._limits.speed_mps
+        twist, radius_m = self.pilot.motion.twist, self.footprint_radius_m
+        presence = Presence(now_s, now_s + dt_s, here, twist, radius_m, speed_mps, stop, ahead)
+        self.team.send(presence, self.slam.grid())
 
     def _read(self) -> Sequence[Measurement]:
         try:

@@ -14,7 +14,7 @@ from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tree_news import leaves_that_ended
 from explore_bt.tree import Status
-from explore_bt.types import Outcome, Scan2D
+from explore_bt.types import Doing, Outcome, Scan2D
 
 __all__ = ["Runner"]
 
@@ -188,6 +188,8 @@ class Runner:
         status = robot.decide()
         if status is not Status.RUNNING:
             self.ended[robot.name] = status
+            robot.team.claim(())
+            robot.team.say_doing(Doing.OVER)
             robot.pilot.hold()
 
     def _budget_spent(self) -> str:
@@ -211,7 +213,7 @@ class Runner:
     def _show(self) -> None:
         final = self._phase is _Phase.OVER
         for robot in self.robots:
-            robot.scores.map_step(robot.slam.grid(), self.now_s, final=final)
+            robot.scores.map_step(robot.team_map.grid(), self.now_s, final=final)
         snapshots = tuple(robot.snapshot() for robot in self.robots)
         self._observers.tick(TickSnapshot(self.tick, self.now_s, snapshots))
         self.tick += 1

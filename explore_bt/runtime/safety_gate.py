@@ -3,8 +3,9 @@
 Before each command the gate rolls the robot forward: the control period under the wanted twist, then
 the jerk-limited brake to rest, turning included. Every place on that way must be free for the footprint,
 in the last scans and in the newest map, where unknown counts as obstacle. Of things that move it must stay
-clear until it is at rest, whichever way they walk. If a place is not free, the brake that was checked the
-last time goes out instead. So by induction the robot can always stop in free space, before anyone is there.
+clear until it is at rest, whichever way they walk; of team mates, where they would stop. If a place is not
+free, the brake that was checked the last time goes out instead. So by induction the robot can always stop
+in free space, before anyone is there.
 """
 
 from __future__ import annotations
@@ -19,9 +20,10 @@ from numpy.typing import NDArray
 
 from explore_bt.interfaces import HeldBy, Surroundings
 from explore_bt.runtime.clearance_window import ClearanceWindow
+from explore_bt.runtime.team_mate import fault_by_mates
 from explore_bt.runtime.walking_distance import WalkingDistance, spare_of_walkers_m
 from explore_bt.runtime.way_to_rest import WayToRest, brake_velocities, way_to_rest
-from explore_bt.types import MotionLimits, MotionState, Pose2, Twist2
+from explore_bt.types import Mate, MotionLimits, MotionState, Pose2, Twist2
 
 __all__ = ["GateDecision", "SafetyGate"]
 
@@ -81,9 +83,16 @@ class _Brake:
 
 
 class SafetyGate:
-    """Checks commands for one robot and brakes for it when it must."""
+    """Checks commands for one robot and brakes for it when it must.
+
+    Attributes:
+        mates: those of its team whose word is fresh.
+        in_the_way: the name of the one that it was last held for.
+    """
 
     def __init__(self, footprint_radius_m: float, limits: MotionLimits) -> None:
+        self.mates: tuple[Mate, ...] = ()
+        self.in_the_way = ""
         self._radius_m = footprint_radius_m
         self._limits = limits
         self._brake = _Brake(MotionState())
@@ -133,10 +142,17 @@ class SafetyGate:
         held_by, fault = HeldBy.OBSTACLE, self._fault_on_the_way(way, following)
         if not fault:
             held_by, fault = HeldBy.SOMEONE, self._fault_by_people(way, now_s)
+        if not fault and np.any(way.poses[:, :2] - way.poses[0, :2]):
+            held_by, (fault, whom) = HeldBy.MATE, fault_by_mates(way.poses, self._radius_m, self.mates, now_s)
+            self.in_the_way = whom or self.in_the_way
         if fault:
             return GateDecision(self._next_of_brake(motion, dt_s), fault, held_by)
         self._brake = _Brake(following)
         return GateDecision(following)
+
+    def stop_places(self, motion: MotionState, pose: Pose2, dt_s: float) -> NDArray[np.float64]:
+        """(N, 2) metres, ``map`` frame: where the robot passes if it brakes after the coming period."""
+        return way_to_rest(motion, pose, motion, self._limits, dt_s).poses[:, :2]
 
     def brake(self, motion: MotionState, dt_s: float) -> MotionState:
         """The next state of a controlled stop, whatever the controller wants."""

@@ -13,9 +13,11 @@ from explore_bt.interfaces import Slam, Surroundings
 from explore_bt.runtime.fault_log import FaultLog
 from explore_bt.runtime.people import People
 from explore_bt.runtime.steadied import steadied
+from explore_bt.runtime.team_mate import without_mates
 from explore_bt.types import (
     Estimate,
     Health,
+    Mate,
     Measurement,
     MotionState,
     MovingObstacle,
@@ -48,6 +50,7 @@ class Senses:
         scan_twist: how it moved then.
         moving: what moves around, as that scan tells.
         measured: what SLAM was given since somebody last emptied this.
+        mates: team mates whose word is fresh: SLAM and whoever looks for people are not shown them.
     """
 
     def __init__(self, slam: Slam, faults: FaultLog) -> None:
@@ -60,6 +63,8 @@ class Senses:
         self.scan_twist = Twist2()
         self.moving: tuple[MovingObstacle, ...] = ()
         self.measured: list[Measurement] = []
+        self.mates: tuple[Mate, ...] = ()
+        self._strangers: Scan2D | None = None
 
     def estimate(self) -> Estimate:
         """SLAM's newest pose, ``lost`` if the plugin itself broke down."""
@@ -68,10 +73,14 @@ class Senses:
             return replace(estimate, health=Health.LOST, reason=self._slam_fault)
         return estimate
 
-    def take(self, measurement: Measurement) -> bool:
-        """Give one to SLAM; whether it was given."""
+    def take(self, measurement: Measurement, pilot: _Drives | None = None) -> bool:
+        """Give one to SLAM; whether it was given. ``pilot`` knows where the robot is meanwhile."""
         if isinstance(measurement, Scan2D):
             self.scan = measurement
+            if pilot is not None and self.mates:
+                pose = pilot.predict(self._slam.estimate(), measurement.stamp_s).T_map_base
+                measurement = without_mates(measurement, pose, self.mates)
+            self._strangers = measurement
         if self._slam_fault:
             return False
         self.measured.append(measurement)
@@ -94,12 +103,17 @@ class Senses:
     def look(self, pilot: _Drives) -> tuple[Surroundings, Estimate]:
         """What the newest scan shows, and the estimate at its stamp."""
         assert self.scan is not None  # asked for after a scan only
+        assert self._strangers is not None  # taken with it
         estimate = self._estimate_of_scan(self.scan, pilot)
         self.scan_pose, self.scan_twist = estimate.T_map_base, pilot.motion.twist
         if pilot.has_jumped(estimate):
             self._people.forget()
         around = self._people.around(
-            self.scan, estimate.T_map_base, pilot.motion.twist, self.seen_points(pilot), self._slam.grid()
+            self._strangers,
+            estimate.T_map_base,
+            pilot.motion.twist,
+            self.seen_points(pilot),
+            self._slam.grid(),
         )
         self.moving = around.moving
         return around, estimate

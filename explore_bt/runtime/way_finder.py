@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
-from explore_bt.interfaces import Planner, Slam
+from explore_bt.interfaces import Planner
 from explore_bt.runtime.legs import plan_through
 from explore_bt.runtime.stop_flag import StopFlag
-from explore_bt.types import OccupancyGrid, Path, Pose2
+from explore_bt.types import GridWindow, OccupancyGrid, Path, Pose2
 
 __all__ = ["WayFinder"]
 
 
-class WayFinder:
-    """One robot's planner at work on its SLAM's maps."""
+class _Maps(Protocol):
+    """A map and how it changes: SLAM's, or the team's."""
 
-    def __init__(self, planner: Planner, slam: Slam, stop: StopFlag) -> None:
+    def grid(self) -> OccupancyGrid:
+        """The newest map."""
+
+    def changed_since(self, revision: int) -> GridWindow | None:
+        """Where it may differ from that revision."""
+
+
+class WayFinder:
+    """One robot's planner at work on its maps."""
+
+    def __init__(self, planner: Planner, maps: _Maps, stop: StopFlag) -> None:
         self._planner = planner
-        self._slam = slam
+        self._maps = maps
         self._stop = stop
         self._planned_on: OccupancyGrid | None = None
 
@@ -47,10 +58,10 @@ class WayFinder:
 
         A map with tight places marked has cells that SLAM knows nothing of: then nobody knows.
         """
-        plain = grid if grid is self._slam.grid() else None
+        plain = grid if grid is self._maps.grid() else None
         before, self._planned_on = self._planned_on, plain
         if before is None or plain is None or before is plain:
             return
-        window = self._slam.changed_since(before.revision)
+        window = self._maps.changed_since(before.revision)
         if window is not None:
             self._planner.expect_change(before, plain, window)

@@ -18,28 +18,34 @@ from typing import TYPE_CHECKING
 from explore_bt.testing.registered import registered
 
 if TYPE_CHECKING:
+    from explore_bt.testing.allocator_contract import AllocatorContract
     from explore_bt.testing.controller_contract import ControllerContract
     from explore_bt.testing.driver_contract import DriverContract
     from explore_bt.testing.fake_robot import FakeRobot
     from explore_bt.testing.planner_contract import PlannerContract
     from explore_bt.testing.slam_contract import SlamContract
+    from explore_bt.testing.team_contract import TeamContract
 
 __all__ = [
+    "AllocatorContract",
     "ControllerContract",
     "DriverContract",
     "FakeRobot",
     "PlannerContract",
     "SlamContract",
+    "TeamContract",
     "registered",
 ]
 
 # imported on first use: a suite brings hypothesis or numba with it, which another author need not have
 _HOME = {
+    "AllocatorContract": "allocator_contract",
     "ControllerContract": "controller_contract",
     "DriverContract": "driver_contract",
     "FakeRobot": "fake_robot",
     "PlannerContract": "planner_contract",
     "SlamContract": "slam_contract",
+    "TeamContract": "team_contract",
 }
 
 

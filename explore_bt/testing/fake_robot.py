@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from explore_bt.errors import PlanningFailure
+from explore_bt.fleet import Alone
 from explore_bt.interfaces import ControlOutput, ControlStatus, HeldBy, MapView
 from explore_bt.types import (
     FREE,
@@ -36,6 +37,7 @@ class FakePilot:
         self.blocked_s = 0.0
         self.held_by = HeldBy.OBSTACLE
         self.gate_reason = ""
+        self.in_the_way = ""
 
     def follow(self, path: Path) -> None:
         """Remember the path; the status becomes ``running``."""
@@ -74,6 +76,7 @@ class FakeRobot:
         self.drawn: list[Drawing] = []
         self.limited: tuple[Budget, ...] = ()
         self.moving: tuple[MovingObstacle, ...] = ()
+        self.team = Alone()
 
     def now_s(self) -> float:
         """``time_s``."""

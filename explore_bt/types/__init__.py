@@ -14,6 +14,7 @@ from explore_bt.types.drawing import (
 )
 from explore_bt.types.estimate import Estimate, Health, Trajectory
 from explore_bt.types.grid import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
+from explore_bt.types.mate import Doing, Mate
 from explore_bt.types.measurement import (
     Battery,
     Imu,
@@ -36,6 +37,7 @@ __all__ = [
     "UNKNOWN",
     "Battery",
     "Budget",
+    "Doing",
     "Drawing",
     "Estimate",
     "FrontierMark",
@@ -45,6 +47,7 @@ __all__ = [
     "Imu",
     "MapStructure",
     "MappingResult",
+    "Mate",
     "Measurement",
     "MotionLimits",
     "MotionState",

@@ -77,8 +77,11 @@ def test_once_over_it_stays_over() -> None:
 def test_several_robots_have_a_decision_each() -> None:
     truth = flat()
     explorer = Explorer(robot_radius_m=0.2)
-    decisions = explorer.decide(truth, {"one": START, "two": Pose2(6.0, 4.5, 0.0)})
+    poses = {"one": START, "two": Pose2(6.0, 4.5, 0.0)}
+    decisions = explorer.decide(truth, poses)
     assert set(decisions) == {"one", "two"}
+    assert decisions["two"].done, "one had found nothing before"
+    decisions = explorer.decide(truth, poses)
     assert all(decision.done for decision in decisions.values())
 
 

@@ -16,6 +16,8 @@ SUITES = {
     "slam": "SlamContract",
     "planner": "PlannerContract",
     "controller": "ControllerContract",
+    "team": "TeamContract",
+    "allocator": "AllocatorContract",
 }
 
 

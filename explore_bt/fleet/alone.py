@@ -1,0 +1,65 @@
+"""The team of a robot that is alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from explore_bt.fleet.team_map import TeamMap
+from explore_bt.interfaces import API_VERSION, Allocator, Offers, PluginOptions, RobotContext
+from explore_bt.types import Doing, Mate, OccupancyGrid
+
+__all__ = ["Alone", "Everything"]
+
+
+class Everything(Allocator):
+    """All work is the asker's."""
+
+    name = "everything"
+    api_version = API_VERSION
+    heeds_claims: ClassVar[bool] = False
+
+    def allot(self, offers: Offers) -> Sequence[int]:
+        """All."""
+        return range(len(offers.gains_m2))
+
+
+class Alone:
+    """Has nobody to tell anything to; the null object of ``TeamLink``, and ``TeamServices`` for tests."""
+
+    yields = 0
+
+    def __init__(self, name: str = "robot", allocator: Allocator | None = None) -> None:
+        self.name = name
+        self.allocator = allocator or Everything(PluginOptions())
+        self.mates: tuple[Mate, ...] = ()
+        self.claims: tuple[tuple[float, float], ...] = ()
+        self.doing = Doing.AT_WORK
+
+    @property
+    def near(self) -> tuple[Mate, ...]:
+        """Nobody."""
+        return self.mates
+
+    def setup(self, context: RobotContext, team_map: TeamMap) -> None:
+        """Nothing to join."""
+
+    def receive(self, now_s: float) -> None:
+        """Nobody speaks."""
+
+    def send(self, presence: object, grid: OccupancyGrid) -> None:
+        """Nobody listens."""
+
+    def claim(self, places: Sequence[tuple[float, float]]) -> None:
+        """Remember them in ``claims``."""
+        self.claims = tuple(places)
+
+    def say_doing(self, doing: Doing) -> None:
+        """Remember it in ``doing``."""
+        self.doing = doing
+
+    def insist(self, until_s: float) -> None:
+        """Nobody is in the way."""
+
+    def close(self) -> None:
+        """Nothing to leave."""

@@ -1,0 +1,170 @@
+"""One robot's end of the team: tells what it does and sees, hears what the others do and see."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from explore_bt.fleet.messages import MessageError, Presence, Tile, decode, encode
+from explore_bt.fleet.roster import Roster
+from explore_bt.fleet.team_map import TeamMap
+from explore_bt.fleet.tiles import TileCutter
+from explore_bt.interfaces import Allocator, RobotContext, Slam, Team
+from explore_bt.types import Doing, Mate, OccupancyGrid
+
+__all__ = ["NEAR_S", "TeamLink"]
+
+NEAR_S = 0.5
+"""Who was heard of so lately is kept clear of by what it told; anybody else as somebody unknown."""
+_TILES_PERIOD_S = 0.5
+_BURST_S = 2.0
+_INSISTS = -1
+PRESENCE, TILE = "presence", "tile"
+
+
+class TeamLink:
+    """``TeamServices`` over a team plugin.
+
+    Args:
+        name: the robot's.
+        team: carries the bytes.
+        allocator: divides the work.
+        slam: whose map is told.
+        tell: takes level, source and message of an event.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        team: Team,
+        allocator: Allocator,
+        slam: Slam,
+        tell: Callable[[str, str, str], None],
+    ) -> None:
+        self.name = name
+        self.allocator = allocator
+        self._team = team
+        self._slam = slam
+        self._tell = tell
+        self._roster = Roster(shares_clock=team.shares_clock)
+        self._cutter = TileCutter()
+        self._map = TeamMap(slam)
+        self._queue: dict[tuple[int, int], Tile] = {}
+        self._cut_revision = -1
+        self._cut_s = -_TILES_PERIOD_S
+        self._allowance = self._filled_s = 0.0
+        self._now_s = 0.0
+        self._claims: tuple[tuple[float, float], ...] = ()
+        self._doing = Doing.AT_WORK
+        self._insists_until_s = -1.0
+        self._strangers: set[str] = set()
+        self._present: frozenset[str] = frozenset()
+        self._sent = {PRESENCE: 0, TILE: 0}
+        self._began_s: float | None = None
+
+    # --- TeamServices ---------------------------------------------------------------------------------
+
+    @property
+    def mates(self) -> tuple[Mate, ...]:
+        """The other robots that were heard of a moment ago, by name."""
+        return self._roster.present(self._now_s)
+
+    @property
+    def near(self) -> tuple[Mate, ...]:
+        """Those of them whose word is fresh enough to drive by."""
+        return self._roster.present(self._now_s, NEAR_S)
+
+    @property
+    def yields(self) -> int:
+        """Below 0 while it insists."""
+        return _INSISTS if self._now_s < self._insists_until_s else 0
+
+    def claim(self, places: Sequence[tuple[float, float]]) -> None:
+        """Told with the next presence."""
+        self._claims = tuple(places)
+
+    def say_doing(self, doing: Doing) -> None:
+        """Told with the next presence."""
+        self._doing = doing
+
+    def insist(self, until_s: float) -> None:
+        """Told with the next presence."""
+        self._insists_until_s = until_s
+
+    # --- what the robot calls -------------------------------------------------------------------------
+
+    def setup(self, context: RobotContext, team_map: TeamMap) -> None:
+        """Join; what others see goes into ``team_map``."""
+        self._map = team_map
+        self._team.setup(context)
+
+    def receive(self, now_s: float) -> None:
+        """Take in what the others have said."""
+        self._now_s = now_s
+        for letter in self._team.hear():
+            try:
+                message = decode(letter.payload)
+            except MessageError as fault:
+                if letter.sender not in self._strangers:
+                    self._strangers.add(letter.sender)
+                    self._tell("warning", "team", f"robot {letter.sender} is not understood: {fault}")
+                continue
+            if isinstance(message, Tile):
+                self._map.put(letter.sender, message)
+            else:
+                self._roster.take(letter.sender, message, now_s)
+        self._tell_of_comings()
+
+    def send(self, presence: Presence, grid: OccupancyGrid) -> None:
+        """Tell where the robot is, and as many changed tiles as the budget allows.
+
+        Args:
+            presence: without claims, doing and priority, which the link knows.
+            grid: the robot's own map.
+        """
+        now_s = presence.stamp_s
+        if self._began_s is None:
+            self._began_s = self._filled_s = now_s
+        budget = self._team.budget_bytes_per_s
+        self._allowance = min(self._allowance + budget * (now_s - self._filled_s), budget * _BURST_S)
+        self._filled_s = now_s
+        told = replace(presence, claims=self._claims, doing=self._doing, yields=self.yields)
+        self._say(PRESENCE, PRESENCE, encode(told))
+        self._cut(grid, now_s)
+        while self._queue and self._allowance > 0.0:
+            place = next(iter(self._queue))
+            self._say(TILE, f"{TILE}/{place[0]}/{place[1]}", encode(self._queue.pop(place)))
+
+    def close(self) -> None:
+        """Leave."""
+        self._team.close()
+
+    def figures(self) -> Mapping[str, float]:
+        """Bytes per second of mission time, by what they were for; and what the plugin counts itself."""
+        span_s = max(self._now_s - (self._began_s or 0.0), 1.0)
+        own = {f"{kind}_bytes_per_s": count / span_s for kind, count in self._sent.items()}
+        return {**own, **self._team.figures()}
+
+    # --- inside -----------------------------------------------------------------------------------------
+
+    def _say(self, kind: str, topic: str, payload: bytes) -> None:
+        self._team.say(topic, payload)
+        self._sent[kind] += len(payload)
+        self._allowance -= len(payload)
+
+    def _cut(self, grid: OccupancyGrid, now_s: float) -> None:
+        """Tiles that wait are replaced by newer ones, at their old place in the queue."""
+        if now_s - self._cut_s < _TILES_PERIOD_S - 1e-6 or grid.revision == self._cut_revision:
+            return
+        window = None if self._cut_revision < 0 else self._slam.changed_since(self._cut_revision)
+        for tile in self._cutter.changed(grid, window, round(1000 * now_s)):
+            self._queue[tile.place] = tile
+        self._cut_s, self._cut_revision = now_s, grid.revision
+
+    def _tell_of_comings(self) -> None:
+        present = frozenset(mate.name for mate in self.mates)
+        for name in sorted(present - self._present):
+            self._tell("info", "team", f"robot {name} is there")
+        for name in sorted(self._present - present):
+            self._tell("warning", "team", f"robot {name} is silent: what it had claimed is free")
+        self._present = present

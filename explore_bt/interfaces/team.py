@@ -1,0 +1,67 @@
+"""Contract of team plugins: how what robots have to tell one another gets there."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from explore_bt.interfaces.plugin import Plugin, RobotContext
+
+__all__ = ["Letter", "Team"]
+
+
+@dataclass(frozen=True, slots=True)
+class Letter:
+    """What another robot says on a topic: the newest replaces what it said there before."""
+
+    sender: str
+    topic: str
+    payload: bytes
+
+
+class Team(Plugin):
+    """Carries bytes; what they mean is the framework's, the same for every plugin.
+
+    Every robot holds one state per topic, and everybody comes to know everybody's newest: late joiners get
+    what was said before they came, what was lost in between does not matter, and after a partition the newest
+    counts. So nobody has to agree on anything.
+
+    Life: ``setup`` once, then ``say`` and ``hear`` from the control thread, ``close`` once.
+
+    Attributes:
+        shares_clock: whether all robots' mission times are one clock, as in one process.
+    """
+
+    kind = "team"
+    shares_clock: ClassVar[bool] = False
+
+    @abstractmethod
+    def setup(self, context: RobotContext) -> None:
+        """Join under the name ``context.robot``; may take seconds.
+
+        Raises:
+            PluginError: the network cannot be had, or the name is taken.
+        """
+
+    @property
+    @abstractmethod
+    def budget_bytes_per_s(self) -> float:
+        """What a robot may send in the long run; the framework keeps to it."""
+
+    @abstractmethod
+    def say(self, topic: str, payload: bytes) -> None:
+        """Replace what this robot says on a topic. Never blocks, never raises for want of a network."""
+
+    @abstractmethod
+    def hear(self) -> Sequence[Letter]:
+        """News since the last call: of each robot's topics at least the newest, in order. Never blocks."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Leave; the others may keep what was said. Idempotent."""
+
+    def figures(self) -> Mapping[str, float]:
+        """Numbers for the report; none unless overridden."""
+        return {}

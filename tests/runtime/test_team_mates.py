@@ -1,0 +1,154 @@
+"""Robots that keep clear of one another by what they tell."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from explore_bt.interfaces import HeldBy, Surroundings
+from explore_bt.runtime.safety_gate import SafetyGate
+from explore_bt.runtime.team_mate import fault_by_mates, standing, with_mates, without_mates
+from explore_bt.testing.fake_robot import full_circle_scan, open_floor
+from explore_bt.types import Mate, MotionState, Pose2, Twist2
+
+from .conftest import DT, LIMITS, towards
+
+RADIUS = 0.25
+NOWHERE = np.empty((0, 2))
+
+
+def mate(xy: tuple[float, float], stop: list[tuple[float, float]] | None = None, **more: object) -> Mate:
+    places = np.array([xy, *(stop or [])])
+    told = {"stamp_s": 0.0, "binding_s": 0.05, "twist": Twist2(), "ahead": NOWHERE, **more}
+    return Mate("bob", T_map_base=Pose2(*xy, 0.0), radius_m=RADIUS, speed_limit_mps=0.5, stop=places, **told)  # type: ignore[arg-type]  # built from a table
+
+
+class Driven:
+    """A robot that does exactly what its gate sends, and tells where it would stop."""
+
+    def __init__(self, name: str, pose: Pose2) -> None:
+        self.name, self.pose, self.motion = name, pose, MotionState()
+        self.gate = SafetyGate(RADIUS, LIMITS)
+        self.gate.see(Surroundings(0.0, np.empty((0, 2)), open_floor()), pose)
+        self.told = self.tell(0.0)
+        self.reason, self.held_by = "", HeldBy.NOTHING
+
+    def step(self, wanted: Twist2, mates: list[Mate], now_s: float) -> None:
+        self.gate.mates = tuple(mates)
+        decision = self.gate.decide(towards(wanted, self.motion), self.pose, self.motion, DT, now_s)
+        self.reason, self.held_by, motion = decision.reason, decision.held_by, decision.motion
+        told_from = self.pose
+        mean_v = 0.5 * (self.motion.twist.linear_mps + motion.twist.linear_mps)
+        mean_w = 0.5 * (self.motion.twist.angular_rps + motion.twist.angular_rps)
+        heading = self.pose.yaw_rad + 0.5 * mean_w * DT
+        self.motion = motion
+        self.pose = Pose2(
+            told_from.x + mean_v * DT * math.cos(heading),
+            told_from.y + mean_v * DT * math.sin(heading),
+            told_from.yaw_rad + mean_w * DT,
+        )
+        self.told = self.tell(now_s)
+
+    def tell(self, now_s: float) -> Mate:
+        stop = self.gate.stop_places(self.motion, self.pose, DT)
+        twist = self.motion.twist
+        return Mate(self.name, now_s, now_s + DT, self.pose, twist, RADIUS, LIMITS.speed_mps, stop, NOWHERE)
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 100_000), delay=st.sampled_from([0, 0, 2, 6]))
+def test_whatever_three_robots_want_they_never_touch(seed: int, delay: int) -> None:
+    """Also when each hears the others up to 0.3 s late."""
+    rng = np.random.default_rng(seed)
+    robots = [Driven(name, Pose2(1.2 * k, 0.3 * k, rng.uniform(-3, 3))) for k, name in enumerate("abc")]
+    history = [[robot.told for robot in robots]]
+    wishes = [Twist2()] * 3
+    for step in range(120):
+        if step % 20 == 0:
+            wishes = [Twist2(rng.uniform(-0.1, 0.5), rng.uniform(-1, 1)) for _ in robots]
+        now_s = step * DT
+        for number, robot in enumerate(robots):
+            heard = [other.told for other in robots] if not delay else history[max(len(history) - delay, 0)]
+            robot.step(wishes[number], [each for each in heard if each.name != robot.name], now_s)
+        history.append([robot.told for robot in robots])
+        for one, other in itertools.combinations(robots, 2):
+            assert one.pose.distance_to(other.pose) >= 2 * RADIUS
+
+
+def test_two_head_on_stand_and_name_each_other() -> None:
+    robots = [Driven("a", Pose2(0, 0, 0)), Driven("b", Pose2(3, 0, math.pi))]
+    for step in range(200):
+        for robot, other in (robots, robots[::-1]):
+            robot.step(Twist2(0.5, 0.0), [other.told], step * DT)
+    assert robots[0].pose.distance_to(robots[1].pose) < 0.75, "they come near"
+    assert all(robot.reason.startswith(f"team mate {other.name}") for robot, other in (robots, robots[::-1]))
+    assert [(robot.held_by, robot.gate.in_the_way) for robot in robots] == [
+        (HeldBy.MATE, "b"),
+        (HeldBy.MATE, "a"),
+    ]
+
+
+def test_who_stands_too_near_may_drive_off_and_not_nearer() -> None:
+    near = [mate((0.52, 0.0))]
+    away = np.column_stack((np.linspace(0.0, -0.3, 10), np.zeros((10, 2))))
+    assert fault_by_mates(away, RADIUS, near, 0.0) == ("", "")
+    assert fault_by_mates(-away, RADIUS, near, 0.0)[1] == "bob"
+
+
+def test_an_old_word_counts_for_less() -> None:
+    way = np.column_stack((np.linspace(0.0, 0.4, 10), np.zeros((10, 2))))
+    assert fault_by_mates(way, RADIUS, [mate((1.2, 0.0))], 0.05) == ("", "")
+    assert fault_by_mates(way, RADIUS, [mate((1.2, 0.0))], 0.45)[1] == "bob"
+
+
+def test_the_returns_off_a_mate_are_no_part_of_the_map_and_all_others_stay() -> None:
+    ranges = np.full(360, 3.0)
+    ranges[171:190] = 1.75  # ahead, the near side of a disc at 2 m
+    scan = full_circle_scan(ranges)
+    pose = Pose2(1.0, 1.0, math.pi / 2)
+    cleared = without_mates(scan, pose, [mate((1.0, 3.0))])
+    assert np.isnan(cleared.ranges_m[171:190]).all()
+    assert np.array_equal(cleared.ranges_m[190:], scan.ranges_m[190:])
+    assert np.array_equal(cleared.ranges_m[:171], scan.ranges_m[:171])
+    assert without_mates(scan, pose, [mate((6.0, 6.0))]) is scan
+
+
+def test_a_mate_that_drives_is_looked_for_where_it_has_come_to() -> None:
+    ranges = np.full(360, 3.0)
+    ranges[175:185] = 1.75
+    moving = mate((1.0, 0.0), twist=Twist2(0.5, 0.0))
+    late = full_circle_scan(ranges)
+    assert np.isnan(without_mates(late, Pose2(-1.0, 0.0, 0.0), [moving]).ranges_m[175:185]).all()
+    object.__setattr__(late, "stamp_s", 2.0)
+    assert not np.isnan(without_mates(late, Pose2(-1.0, 0.0, 0.0), [moving]).ranges_m[175:185]).any()
+
+
+@pytest.mark.parametrize(
+    ("told", "goal", "counts"),
+    [
+        ({}, (5.0, 0.0), True),
+        ({"twist": Twist2(0.3, 0.0)}, (5.0, 0.0), False),
+        ({"ahead": np.ones((3, 2))}, (5.0, 0.0), False),
+        ({"ahead": np.ones((3, 2)), "yields": -1}, (5.0, 0.0), True),
+        ({}, (2.2, 0.0), False),
+    ],
+    ids=["parked", "moves", "waits and goes second", "waits and goes first", "stands on the goal"],
+)
+def test_a_plan_goes_around_who_will_not_move(
+    told: dict[str, object], goal: tuple[float, float], counts: bool
+) -> None:
+    found = standing([mate((2.0, 0.0), **told)], Pose2(0, 0, 0), Pose2(*goal, 0), (0, "ada"))  # type: ignore[arg-type]  # built from a table
+    assert bool(found) == counts
+
+
+def test_a_mate_is_an_obstacle_as_large_as_it_is_and_leaves_the_robot_its_place() -> None:
+    grid = open_floor(6.0, 0.05)
+    marked = with_mates(grid, [mate((1.0, 0.0))], Pose2(-2, 0, 0), RADIUS)
+    area_m2 = np.count_nonzero(marked.occupied) * 0.05**2
+    assert area_m2 == pytest.approx(math.pi * (RADIUS + 0.08) ** 2, rel=0.1)
+    beside = with_mates(grid, [mate((1.0, 0.0))], Pose2(0.45, 0, 0), RADIUS)
+    cells = beside.centers_of(np.argwhere(beside.occupied))
+    assert np.hypot(cells[:, 0] - 0.45, cells[:, 1]).min() > RADIUS
