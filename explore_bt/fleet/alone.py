@@ -61,5 +61,8 @@ class Alone:
     def insist(self, until_s: float) -> None:
         """Nobody is in the way."""
 
+    def sum_up(self) -> None:
+        """Nothing was told."""
+
     def close(self) -> None:
         """Nothing to leave."""

@@ -135,6 +135,14 @@ class TeamLink:
             place = next(iter(self._queue))
             self._say(TILE, f"{TILE}/{place[0]}/{place[1]}", encode(self._queue.pop(place)))
 
+    def sum_up(self) -> None:
+        """Tell the observers how much was told."""
+        figures = self.figures()
+        parts = (f"{kind} {figures[f'{kind}_bytes_per_s'] / 1000.0:.1f} kB/s" for kind in (PRESENCE, TILE))
+        budget = self._team.budget_bytes_per_s / 1000.0
+        waiting = f", {len(self._queue)} tiles wait" if self._queue else ""
+        self._tell("info", "team", f"told {', '.join(parts)} of {budget:.0f} kB/s{waiting}")
+
     def close(self) -> None:
         """Leave."""
         self._team.close()

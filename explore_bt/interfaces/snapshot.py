@@ -156,7 +156,7 @@ class TickSnapshot:
 class Event:
     """Something worth a line: ``level`` is ``debug``, ``info``, ``warning`` or ``error``.
 
-    Sources: ``recovery``, ``safety gate``, ``slam``, ``tight place``, ``mission``, a plugin
+    Sources: ``recovery``, ``safety gate``, ``slam``, ``team``, ``tight place``, ``mission``, a plugin
     (``planner skeleton``) or, at level ``debug``, the path of the leaf that speaks.
     """
 

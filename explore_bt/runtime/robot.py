@@ -304,6 +304,7 @@ class Robot:
     def rest(self) -> None:
         """Cut the tree off and come to rest; a resumed run goes on where it stood."""
         self._keeping.rest()
+        self.team.sum_up()
         halt(self.tree.root)
         self.pilot.hold()
 

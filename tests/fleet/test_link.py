@@ -1,0 +1,166 @@
+"""A robot's end of the team, over a board in this process."""
+
+import numpy as np
+import pytest
+
+from explore_bt.fleet import Alone, Presence, TeamLink, TeamMap
+from explore_bt.interfaces import (
+    API_VERSION,
+    Commons,
+    Letter,
+    PluginOptions,
+    RobotContext,
+    Slam,
+    Team,
+)
+from explore_bt.plugin import load_plugins
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, Doing, GridWindow, OccupancyGrid, Pose2, Twist2
+
+NOWHERE = np.empty((0, 2))
+
+
+class Board(Team):
+    """A list of all that was said; one fleet for each test."""
+
+    name = "board"
+    api_version = API_VERSION
+    shares_clock = True
+    budget_bytes_per_s = 20_000.0
+
+    def __init__(self, said: list[Letter], budget_bytes_per_s: float = 20_000.0) -> None:
+        super().__init__(PluginOptions())
+        self.said, self.robot, self.read = said, "", 0
+        self.budget_bytes_per_s = budget_bytes_per_s  # type: ignore[misc]  # a property in the contract
+
+    def setup(self, context: RobotContext) -> None:
+        self.robot = context.robot
+
+    def say(self, topic: str, payload: bytes) -> None:
+        self.said.append(Letter(self.robot, topic, payload))
+
+    def hear(self) -> list[Letter]:
+        fresh, self.read = self.said[self.read :], len(self.said)
+        return [letter for letter in fresh if letter.sender != self.robot]
+
+    def close(self) -> None: ...
+
+
+class Drawn:
+    """A SLAM of which only the map is asked for."""
+
+    def __init__(self, cells: int = 200) -> None:
+        rng = np.random.default_rng(3)
+        self.cells = rng.choice([UNKNOWN, FREE, OCCUPIED], (cells, cells)).astype(np.int8)
+        self.map = OccupancyGrid(self.cells, 0.05, (0.0, 0.0), 1)
+
+    def grid(self) -> OccupancyGrid:
+        return self.map
+
+    def changed_since(self, revision: int) -> GridWindow | None:
+        return None
+
+
+class Member:
+    """A link with all that it says and hears."""
+
+    def __init__(
+        self, name: str, said: list[Letter], slam: Drawn | None = None, budget: float = 20_000.0
+    ) -> None:
+        self.slam, self.told = slam or Drawn(2), []
+        self.map = TeamMap(self.slam)
+        slam_as_plugin: Slam = self.slam  # type: ignore[assignment]  # only its map is asked for
+        team = Board(said, budget)
+        self.link = TeamLink(
+            name, team, Alone().allocator, slam_as_plugin, lambda *event: self.told.append(event)
+        )
+        self.link.setup(RobotContext(robot=name, commons=Commons()), self.map)
+
+    def speak(self, now_s: float, xy: tuple[float, float] = (0.0, 0.0)) -> None:
+        pose = Pose2(*xy, 0.0)
+        told = Presence(now_s, now_s + 0.05, pose, Twist2(), 0.25, 0.5, np.array([xy]), NOWHERE)
+        self.link.send(told, self.slam.grid())
+
+
+@pytest.fixture
+def said() -> list[Letter]:
+    return []
+
+
+def test_what_a_robot_is_about_comes_to_the_others(said: list[Letter]) -> None:
+    ada, bob = Member("ada", said), Member("bob", said)
+    ada.link.claim([(1.0, 2.0)])
+    ada.link.say_doing(Doing.IDLE)
+    ada.link.insist(9.0)
+    ada.link.receive(1.0)
+    ada.speak(1.0, (3.0, 4.0))
+    bob.link.receive(1.05)
+    (mate,) = bob.link.mates
+    assert (mate.name, mate.T_map_base.xy, mate.claims, mate.doing) == (
+        "ada",
+        (3.0, 4.0),
+        ((1.0, 2.0),),
+        Doing.IDLE,
+    )
+    assert mate.yields < bob.link.yields
+    assert ada.link.mates == ()
+
+
+def test_who_is_silent_is_first_not_driven_by_and_then_gone_with_its_claims(said: list[Letter]) -> None:
+    ada, bob = Member("ada", said), Member("bob", said)
+    ada.speak(1.0)
+    bob.link.receive(1.1)
+    assert bob.link.near
+    bob.link.receive(1.6)
+    assert not bob.link.near
+    assert bob.link.mates, "its claims stand for a while"
+    bob.link.receive(6.1)
+    assert not bob.link.mates
+    assert [message for _, _, message in bob.told] == [
+        "robot ada is there",
+        "robot ada is silent: what it had claimed is free",
+    ]
+    ada.speak(7.0)
+    bob.link.receive(7.1)
+    assert bob.link.near, "it has come back"
+
+
+def test_a_word_that_comes_late_does_not_undo_a_newer_one(said: list[Letter]) -> None:
+    ada, bob = Member("ada", said), Member("bob", said)
+    ada.speak(1.0, (1.0, 0.0))
+    ada.speak(2.0, (2.0, 0.0))
+    said.reverse()
+    bob.link.receive(2.1)
+    assert bob.link.mates[0].T_map_base.x == 2.0
+
+
+def test_the_map_comes_over_within_the_budget(said: list[Letter]) -> None:
+    """A map of noise, which no compression helps: it takes a while, and no more than was allowed."""
+    budget = 4000.0
+    ada, bob = Member("ada", said, Drawn(), budget), Member("bob", said)
+    for step in range(400):
+        now_s = 0.05 * step
+        ada.speak(now_s)
+        size = sum(len(letter.payload) for letter in said)
+        assert size <= budget * (now_s + 2.0) + 2000
+    bob.link.receive(20.0)
+    ada.link.sum_up()
+    level, source, message = ada.told[-1]
+    assert (level, source) == ("info", "team")
+    assert message.startswith("told presence ")
+    grid, own = bob.map.grid(), ada.slam.grid()
+    for row, col in np.argwhere(own.cells != UNKNOWN)[::97]:
+        assert grid.value_at(*own.center_of(int(row), int(col))) == own.cells[row, col]
+
+
+def test_another_version_is_told_of_once_and_the_rest_goes_on(said: list[Letter]) -> None:
+    bob = Member("bob", said)
+    said += [Letter("old", "presence", bytes([99, 1])), Letter("old", "presence", bytes([99, 1]))]
+    bob.link.receive(1.0)
+    assert [event[0] for event in bob.told] == ["warning"]
+    assert "robot old is not understood: a message of version 99" in bob.told[0][2]
+
+
+def test_the_usual_team_and_allocator_are_installed() -> None:
+    registry = load_plugins().registry
+    assert {"local"} <= set(registry.names("team"))
+    assert {"auction", "greedy", "independent"} <= set(registry.names("allocator"))
