@@ -1,4 +1,4 @@
-"""Built-in teams: ``local``; built-in allocators: ``auction``, ``greedy``, ``independent``."""
+"""Built-in teams: ``local``, ``zenoh``; built-in allocators: ``auction``, ``greedy``, ``independent``."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from explore_bt_teams.greedy import Greedy
 from explore_bt_teams.independent import Independent
 from explore_bt_teams.local import LocalTeam
 from explore_bt_teams.options import TeamOptions
+from explore_bt_teams.zenoh_team import ZenohOptions, ZenohTeam
 
 __all__ = [
     "Auction",
@@ -16,6 +17,8 @@ __all__ = [
     "Independent",
     "LocalTeam",
     "TeamOptions",
+    "ZenohOptions",
+    "ZenohTeam",
     "explore_bt_register",
 ]
 
@@ -23,4 +26,4 @@ __all__ = [
 @hookimpl
 def explore_bt_register() -> list[type]:
     """The teams and allocators of this family."""
-    return [LocalTeam, Auction, Greedy, Independent]
+    return [LocalTeam, ZenohTeam, Auction, Greedy, Independent]

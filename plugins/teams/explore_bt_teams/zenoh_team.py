@@ -1,0 +1,195 @@
+"""Team ``zenoh``: robots in processes and machines of their own, over Eclipse Zenoh."""
+
+from __future__ import annotations
+
+import struct
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from explore_bt.errors import PluginError
+from explore_bt.interfaces import API_VERSION, Letter, PluginOptions, RobotContext, Team
+from explore_bt_teams.inbox import Inbox
+from explore_bt_teams.options import TeamOptions
+
+__all__ = ["ZenohOptions", "ZenohTeam"]
+
+_HEAD = struct.Struct("<QQ")
+"""Life of the speaker (when it joined, nanoseconds), and the number of the word in that life."""
+_WHOLE = "whole"
+"""Ends an answer: that was all up to this number."""
+_NAME_TIMEOUT_S = 1.0
+_ASK_TIMEOUT_S = 5.0
+
+
+class ZenohOptions(TeamOptions):
+    """Where the others are; without any, they are looked for by multicast."""
+
+    mode: str = Field("peer", pattern="peer|client", description="client: everything goes through a router")
+    connect: tuple[str, ...] = Field((), description="endpoints to go to: tcp/192.168.1.1:7447")
+    listen: tuple[str, ...] = Field((), description="endpoints to be reached at; tcp/127.0.0.1:0 stays here")
+    multicast: bool = Field(True, description="look for peers on the local network")
+
+
+class ZenohTeam(Team):
+    """Peers that find one another, or clients of a router.
+
+    Words are put and may be dropped. Each bears its number; whoever hears a gap asks that robot for all it
+    has said since, which is the newest of each topic. So do late joiners, and both sides of a partition that
+    has healed.
+    """
+
+    name = "zenoh"
+    api_version = API_VERSION
+    Options: ClassVar[type[PluginOptions]] = ZenohOptions
+
+    def __init__(self, options: PluginOptions) -> None:
+        super().__init__(options)
+        self._settings = ZenohOptions.model_validate(options.model_dump())
+        self._zenoh: Any = None
+        self._session: Any = None
+        self._lock = threading.Lock()
+        self._said: dict[str, tuple[int, bytes]] = {}
+        self._count = 0
+        self._inbox = Inbox()
+        self._robot = self._prefix = ""
+        self._life = 0
+
+    def setup(self, context: RobotContext) -> None:
+        """Open the session and join.
+
+        Raises:
+            PluginError: zenoh is not installed, an endpoint cannot be had, or the name is taken.
+        """
+        self._zenoh = _imported()
+        self._robot, self._prefix = context.robot, f"explore-bt/{self._settings.fleet}"
+        self._life = time.time_ns()  # of two lives of a robot the later one counts; no decision hangs on it
+        session = self._opened()
+        try:
+            self._refuse_twin(session)
+            session.declare_queryable(f"{self._prefix}/{self._robot}/**", self._answer)
+            session.declare_subscriber(f"{self._prefix}/*/**", self._take)
+        except BaseException:
+            session.close()
+            raise
+        self._session = session
+        for reply in session.get(f"{self._prefix}/*/**", timeout=_NAME_TIMEOUT_S, target=self._all):
+            self._take_reply(reply)
+
+    @property
+    def budget_bytes_per_s(self) -> float:
+        """As the options say."""
+        return self._settings.bandwidth
+
+    def say(self, topic: str, payload: bytes) -> None:
+        """Put, dropped where the network does not keep up."""
+        session = self._session
+        if session is None:
+            return
+        with self._lock:
+            self._count += 1
+            word = _HEAD.pack(self._life, self._count) + payload
+            self._said[topic] = (self._count, word)
+        try:
+            drop = self._zenoh.CongestionControl.DROP
+            session.put(f"{self._prefix}/{self._robot}/{topic}", word, congestion_control=drop)
+        except self._zenoh.ZError:
+            self._inbox.failed += 1  # it is in ``_said``: who misses it asks
+
+    def hear(self) -> Sequence[Letter]:
+        """What has come; and asks for what is missing."""
+        letters = self._inbox.drain()
+        if self._session is not None:
+            for sender, since in self._inbox.missing(time.monotonic()):
+                self._ask(sender, since)
+        return letters
+
+    def close(self) -> None:
+        """Leave."""
+        session, self._session = self._session, None
+        if session is not None:
+            session.close()
+
+    def figures(self) -> Mapping[str, float]:
+        """Words that came, gaps that were asked for, words that could not be put."""
+        return self._inbox.figures()
+
+    # --- inside; what zenoh calls comes on its own threads ----------------------------------------------
+
+    @property
+    def _all(self) -> Any:
+        return self._zenoh.QueryTarget.ALL
+
+    def _opened(self) -> Any:
+        settings, config = self._settings, self._zenoh.Config()
+        config.insert_json5("mode", f'"{settings.mode}"')
+        config.insert_json5("scouting/multicast/enabled", "true" if settings.multicast else "false")
+        for key, endpoints in (("connect", settings.connect), ("listen", settings.listen)):
+            if endpoints:
+                listed = ", ".join(f'"{endpoint}"' for endpoint in endpoints)
+                config.insert_json5(f"{key}/endpoints", f"[{listed}]")
+        try:
+            return self._zenoh.open(config)
+        except self._zenoh.ZError as refusal:
+            raise PluginError(
+                f"team zenoh: no session: {refusal}. Check connect, listen and multicast, and that a router "
+                "runs if mode is client"
+            ) from None
+
+    def _refuse_twin(self, session: Any) -> None:
+        for reply in session.get(
+            f"{self._prefix}/{self._robot}/name", timeout=_NAME_TIMEOUT_S, target=self._all
+        ):
+            if reply.ok is not None:
+                raise PluginError(
+                    f"team zenoh: there is a robot {self._robot} in the fleet {self._settings.fleet}; names "
+                    "are unique"
+                )
+
+    def _answer(self, query: Any) -> None:
+        """All that was said after the number that is asked for; to the name itself, yes."""
+        key = str(query.key_expr)
+        own = f"{self._prefix}/{self._robot}"
+        if key == f"{own}/name":
+            query.reply(key, b"")
+            return
+        since = int(query.parameters.get("since", "0"))
+        with self._lock:
+            words = [(topic, word) for topic, (number, word) in self._said.items() if number > since]
+            count = self._count
+        for topic, word in words:
+            query.reply(f"{own}/{topic}", word)
+        query.reply(f"{own}/{_WHOLE}", _HEAD.pack(self._life, count))
+
+    def _take(self, sample: Any) -> None:
+        sender, _, topic = str(sample.key_expr).removeprefix(f"{self._prefix}/").partition("/")
+        word = sample.payload.to_bytes()
+        if sender == self._robot or len(word) < _HEAD.size:
+            return
+        life, number = _HEAD.unpack_from(word)
+        if topic == _WHOLE:
+            self._inbox.answered(sender, life, number)
+            return
+        self._inbox.put(Letter(sender, topic, word[_HEAD.size :]), life, number)
+
+    def _take_reply(self, reply: Any) -> None:
+        if reply.ok is not None:
+            self._take(reply.ok)
+
+    def _ask(self, sender: str, since: int) -> None:
+        selector = f"{self._prefix}/{sender}/**?since={since}"
+        try:
+            self._session.get(selector, self._take_reply, timeout=_ASK_TIMEOUT_S, target=self._all)
+        except self._zenoh.ZError:
+            self._inbox.failed += 1
+
+
+def _imported() -> Any:
+    try:
+        import zenoh
+    except ImportError:
+        raise PluginError('team zenoh is not installed; type: pip install "explore-bt[fleet]"') from None
+    return zenoh

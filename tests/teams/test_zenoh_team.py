@@ -1,0 +1,94 @@
+"""The contract of teams over Zenoh on loopback, and what is special to a network."""
+
+import itertools
+import random
+import socket
+
+import pytest
+from explore_bt_teams import ZenohOptions, ZenohTeam
+from explore_bt_teams.inbox import Inbox
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from explore_bt.errors import PluginError
+from explore_bt.interfaces import Commons, Letter, RobotContext, Team
+from explore_bt.testing import TeamContract
+
+zenoh = pytest.importorskip("zenoh", reason="eclipse-zenoh is not installed")
+FLEETS = itertools.count()
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+class TestZenohTeam(TeamContract):
+    """Each listens at a port of its own and goes to those before it; nothing leaves this machine."""
+
+    settle_s = 0.3
+
+    @pytest.fixture(autouse=True)
+    def fleet(self) -> None:
+        self.name, self.endpoints = f"fleet{next(FLEETS)}", ()
+
+    def make(self) -> Team:
+        own = f"tcp/127.0.0.1:{free_port()}"
+        options = ZenohOptions(fleet=self.name, listen=(own,), connect=self.endpoints, multicast=False)
+        self.endpoints = (*self.endpoints, own)
+        return ZenohTeam(options)
+
+
+def test_an_endpoint_that_cannot_be_had_is_named() -> None:
+    team = ZenohTeam(ZenohOptions(listen=("tcp/192.0.2.1:1",), multicast=False))
+    with pytest.raises(PluginError, match=r"team zenoh: no session: .* Check connect, listen and multicast"):
+        team.setup(RobotContext(robot="a", commons=Commons()))
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 100_000), lost=st.floats(0.0, 0.9), cut=st.integers(0, 60))
+def test_whatever_is_dropped_delayed_or_repeated_the_newest_of_all_topics_comes_in_the_end(
+    seed: int, lost: float, cut: int
+) -> None:
+    """Also the answers are lost for a while; then the network is well again."""
+    chance = random.Random(seed)
+    inbox, said, heard = Inbox(), {}, {}
+    under_way: list[tuple[str, int]] = []
+
+    def deliver(topic: str, number: int) -> None:
+        inbox.put(Letter("a", topic, b"%d" % number), 1, number)
+
+    for step in range(1, 121):
+        topic = f"tile/{chance.randrange(8)}" if step < 100 else "presence"
+        said[topic] = step
+        is_well = step > 100
+        if is_well or (step > cut and chance.random() > lost):
+            under_way.append((topic, step))
+        chance.shuffle(under_way)
+        while under_way and (is_well or chance.random() < 0.7):
+            word = under_way.pop()
+            deliver(*word)
+            if chance.random() < 0.2:
+                deliver(*word)
+        for name, since in inbox.missing(float(step)):
+            assert name == "a"
+            if is_well or chance.random() > lost:
+                for asked, number in said.items():
+                    if number > since:
+                        deliver(asked, number)
+                inbox.answered("a", 1, step)
+        for letter in inbox.drain():
+            number = int(letter.payload)
+            assert number > heard.get(letter.topic, 0), "nothing twice, nothing late"
+            heard[letter.topic] = number
+    assert heard == said
+
+
+def test_who_comes_back_begins_anew_and_words_of_its_life_before_are_not_heard() -> None:
+    inbox = Inbox()
+    inbox.put(Letter("a", "presence", b"old"), 1, 7)
+    inbox.put(Letter("a", "presence", b"new"), 2, 1)
+    inbox.put(Letter("a", "tile/0/0", b"ghost"), 1, 8)
+    assert [letter.payload for letter in inbox.drain()] == [b"new"]
+    assert inbox.missing(10.0) == []
