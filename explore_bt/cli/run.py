@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from typing import Annotated
 
 import typer
 
@@ -40,6 +41,13 @@ def run(
     groot_port: GrootPortOption = 1667,
     groot_host: GrootHostOption = "127.0.0.1",
     mock: MockOption = None,
+    robot: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Only this robot; the others run elsewhere (team: zenoh)."),
+    ] = None,
+    pace: Annotated[
+        float, typer.Option(min=0.1, metavar="X", help="With --robot: simulated seconds a second.")
+    ] = 1.0,
     verbose: VerboseOption = False,
 ) -> None:
     """Run a mission; map, recording and report land in a folder.
@@ -48,6 +56,10 @@ def run(
     Ctrl-C stops the robot safely and saves the results; explore-bt resume goes on from there.
     """
     checked, registry = load_checked(mission, set_, mock)
+    if robot is not None:
+        from explore_bt.mission import only_robot
+
+        checked = only_robot(checked, robot)
     folder = new_run_folder(out, checked.path.stem)
     live = "terminal" if not headless and sys.stdout.isatty() else "progress"
     sinks = make_sinks(registry, [*ALWAYS, live, *(sink or ())])
@@ -58,10 +70,11 @@ def run(
         session = DebugSession()
         sinks += groot_sinks(groot, checked, session, groot_host, groot_port)
     typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
-    from explore_bt.runtime import StopFlag
+    from explore_bt.runtime import Pace, StopFlag
 
+    attendant = session or (Pace(pace) if robot is not None else None)
     stop = StopFlag()
     with run_log(folder / "run.log", verbose=verbose), stopping_by_signal(stop):
-        result = drive(checked, registry, folder, seed, sinks, stop, session)
+        result = drive(checked, registry, folder, seed, sinks, stop, attendant)
     show_result(result, folder)
     raise typer.Exit(exit_code(result.outcome))

@@ -9,13 +9,16 @@ __all__ = ["PRESENT_S", "Roster"]
 
 PRESENT_S = 5.0
 """A robot that has been silent for so long is no mate: its claims are free. It may come back."""
+_DELAY_S = 0.25
+"""Where clocks are not compared nobody knows how long a word was under way."""
 
 
 class Roster:
     """What the others last told, on the listener's clock.
 
     Args:
-        shares_clock: see ``Team.shares_clock``; else a message counts from when it is heard.
+        shares_clock: see ``Team.shares_clock``; else a message counts as so old when it is heard as a usual
+            network makes it.
     """
 
     def __init__(self, *, shares_clock: bool) -> None:
@@ -30,7 +33,7 @@ class Roster:
         if before is not None and is_known and told.stamp_s <= before.stamp_s:
             return False
         self._told[sender] = told
-        stamp_s = told.stamp_s if self._shares_clock else now_s
+        stamp_s = told.stamp_s if self._shares_clock else now_s - _DELAY_S
         self._mates[sender] = Mate(
             sender,
             stamp_s,

@@ -10,6 +10,7 @@ from explore_bt.mission.load import load_mission, load_tree
 from explore_bt.mission.mocks import with_mocks
 from explore_bt.mission.model import Mission, PluginChoice, RobotSpec
 from explore_bt.mission.nodes import CONTROL_NODES, MODIFIERS, Condition, Modifiers, NodeSpec
+from explore_bt.mission.one_robot import only_robot
 from explore_bt.mission.schema import mission_schema
 from explore_bt.mission.wiring import RUNTIME_KEYS
 
@@ -32,6 +33,7 @@ __all__ = [
     "load_mission",
     "load_tree",
     "mission_schema",
+    "only_robot",
     "show_dot",
     "show_text",
     "with_mocks",
