@@ -22,10 +22,10 @@ class WaitForTeam(Leaf):
 
     type_key = "wait_for_team"
 
-    grown: Input[float] = Input(Area, default=2.0, ge=0.0, doc="look again once so much more is known")
-    every: Input[float] = Input(Duration, default=5.0, ge=0.0, doc="but not more often than this")
+    grown: Input[float] = Input(Area, default=1.0, ge=0.0, doc="look again once so much more is known")
+    every: Input[float] = Input(Duration, default=2.0, ge=0.0, doc="but not more often than this")
     at_most: Input[float] = Input(
-        Duration, default=20.0, ge=0.0, doc="look again after so long, for claims are given up too"
+        Duration, default=10.0, ge=0.0, doc="look again after so long, for claims are given up too"
     )
 
     def initialise(self) -> None:

@@ -25,7 +25,7 @@ from explore_bt.runtime.senses import Senses
 from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.stop_flag import StopFlag
-from explore_bt.runtime.team_mate import standing, with_mates
+from explore_bt.runtime.team_mate import first_path, grids_to_try, standing
 from explore_bt.runtime.team_place import team_place
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
@@ -215,11 +215,14 @@ class Robot:
         try:
             here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
             around = standing(self.team.mates, here, goal, (self.team.yields, self.name))
-            grid = with_mates(self.view().grid, around, here, self.footprint_radius_m)
-            path = plan_or_squeeze(
-                lambda radius_m: self._way_finder.path(grid, here, goal, via, radius_m),
-                self.footprint_radius_m,
-                straight_m,
+            grids = grids_to_try(self.view().grid, around, here, self.footprint_radius_m)
+            grid, path = first_path(
+                grids,
+                lambda grid: plan_or_squeeze(
+                    lambda radius_m: self._way_finder.path(grid, here, goal, via, radius_m),
+                    self.footprint_radius_m,
+                    straight_m,
+                ),
             )
             return centred(path, self._senses.seen_points(self.pilot), grid, self.footprint_radius_m)
         except (PlanningFailure, UserError):

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.types import OCCUPIED, Mate, OccupancyGrid, Pose2, Scan2D
+from explore_bt.errors import PlanningFailure
+from explore_bt.types import OCCUPIED, Mate, OccupancyGrid, Path, Pose2, Scan2D
 
-__all__ = ["fault_by_mates", "standing", "with_mates", "without_mates"]
+__all__ = ["fault_by_mates", "first_path", "grids_to_try", "standing", "with_mates", "without_mates"]
 
 _OFF_M = 0.15
 """A return so near to a mate's disc is its own: poses, a sweep's motion and noise are off by less."""
@@ -89,6 +91,29 @@ def standing(mates: Sequence[Mate], here: Pose2, goal: Pose2, priority: tuple[in
     near = [mate for mate in mates if _distance_m(mate, here) < _FAR_M]
     first = [mate for mate in near if (mate.yields, mate.name) < priority and mate.is_standing]
     return list({mate.name: mate for mate in (*(mate for mate in mates if mate.is_parked), *first)}.values())
+
+
+def grids_to_try(
+    grid: OccupancyGrid, around: Sequence[Mate], here: Pose2, radius_m: float
+) -> Sequence[OccupancyGrid]:
+    """The map with all mates to plan around, and without the parked: they may be gone by then."""
+    first = [mate for mate in around if not mate.is_parked]
+    found = [with_mates(grid, around, here, radius_m)]
+    return found if len(first) == len(around) else [*found, with_mates(grid, first, here, radius_m)]
+
+
+def first_path(
+    grids: Sequence[OccupancyGrid], plan: Callable[[OccupancyGrid], Path]
+) -> tuple[OccupancyGrid, Path]:
+    """A path on the first map that has one.
+
+    Raises:
+        PlanningFailure: what is said of the last map.
+    """
+    for grid in grids[:-1]:
+        with contextlib.suppress(PlanningFailure):
+            return grid, plan(grid)
+    return grids[-1], plan(grids[-1])
 
 
 def _distance_m(mate: Mate, pose: Pose2) -> float:

@@ -53,7 +53,7 @@ def test_it_looks_again_once_more_is_known_but_not_every_moment(robot: FakeRobot
     robot.time_s = 1.0
     leaf.tick_once()
     assert leaf.status is Status.RUNNING
-    robot.time_s = 5.0
+    robot.time_s = 2.0
     leaf.tick_once()
     assert leaf.status is Status.SUCCESS
     assert robot.team.doing is Doing.AT_WORK

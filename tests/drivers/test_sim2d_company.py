@@ -158,7 +158,7 @@ def test_robots_without_a_start_begin_side_by_side(tmp_path: Path) -> None:
     starts = [driver.start for driver in robots(field(tmp_path), None, None, None, None)]
     assert starts[0] == Pose2(0, 0, 0)
     for one, other in itertools.combinations(starts, 2):
-        assert 0.5 + 0.4 - 0.05 <= one.distance_to(other) < 2.5
+        assert 0.5 + 0.7 - 0.05 <= one.distance_to(other) < 3.0
 
 
 def test_a_start_that_is_taken_is_refused_with_who_stands_there(tmp_path: Path) -> None:

@@ -8,11 +8,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from explore_bt.errors import NoPath
 from explore_bt.interfaces import HeldBy, Surroundings
 from explore_bt.runtime.safety_gate import SafetyGate
-from explore_bt.runtime.team_mate import fault_by_mates, standing, with_mates, without_mates
+from explore_bt.runtime.team_mate import (
+    fault_by_mates,
+    first_path,
+    grids_to_try,
+    standing,
+    with_mates,
+    without_mates,
+)
 from explore_bt.testing.fake_robot import full_circle_scan, open_floor
-from explore_bt.types import Mate, MotionState, Pose2, Twist2
+from explore_bt.types import Mate, MotionState, OccupancyGrid, Path, Pose2, Twist2
 
 from .conftest import DT, LIMITS, towards
 
@@ -152,3 +160,26 @@ def test_a_mate_is_an_obstacle_as_large_as_it_is_and_leaves_the_robot_its_place(
     beside = with_mates(grid, [mate((1.0, 0.0))], Pose2(0.45, 0, 0), RADIUS)
     cells = beside.centers_of(np.argwhere(beside.occupied))
     assert np.hypot(cells[:, 0] - 0.45, cells[:, 1]).min() > RADIUS
+
+
+def test_where_the_parked_leave_no_way_the_plan_counts_on_their_going() -> None:
+    grid, here = open_floor(6.0, 0.05), Pose2(-2, 0, 0)
+    parked, waiting = mate((1.0, 0.0)), mate((0.0, 0.0), ahead=np.ones((3, 2)), yields=-1)
+    tried: list[int] = []
+
+    def plan(there: OccupancyGrid) -> Path:
+        tried.append(int(np.count_nonzero(there.occupied)))
+        if len(tried) == 1:
+            raise NoPath("walled in")
+        return Path(np.zeros((2, 3)), np.ones(2))
+
+    grids = grids_to_try(grid, [parked, waiting], here, RADIUS)
+    chosen, _ = first_path(grids, plan)
+    assert chosen is grids[1]
+    assert tried[0] > tried[1] > 0, "who waits with the right of way stays in it"
+    with pytest.raises(NoPath):
+        first_path(grids_to_try(grid, [waiting], here, RADIUS), _refuse)
+
+
+def _refuse(_: OccupancyGrid) -> Path:
+    raise NoPath("walled in")

@@ -18,7 +18,7 @@ class AuctionOptions(PluginOptions):
     """What a bid is made of."""
 
     evenness: float = Field(
-        0.5,
+        2.0,
         ge=0.0,
         le=100.0,
         description="0: the least way for all together; more: the earliest end for all",

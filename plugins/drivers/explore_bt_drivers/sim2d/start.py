@@ -18,8 +18,8 @@ __all__ = ["Taken", "choose_start", "widest_spot"]
 
 _TOUCH_M = 1e-6
 _SPARE_M = 0.05
-_APART_M = 0.4
-"""What is left between robots that begin side by side."""
+_APART_M = 0.7
+"""What is left between robots that begin side by side: one more can pass between them."""
 
 
 @dataclass(frozen=True, slots=True)
