@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import typer
 
 from explore_bt.cli.driving import (
@@ -22,7 +20,7 @@ from explore_bt.cli.guard import guarded
 from explore_bt.cli.loading import MissionArgument, MockOption, SetOption, load_checked
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
-from explore_bt.cli.sinks import ALWAYS, make_sinks
+from explore_bt.cli.sinks import watched_sinks
 from explore_bt.cli.stopping import stopping_by_signal
 
 __all__ = ["run"]
@@ -49,8 +47,7 @@ def run(
     """
     checked, registry = load_checked(mission, set_, mock)
     folder = new_run_folder(out, checked.path.stem)
-    live = "terminal" if not headless and sys.stdout.isatty() else "progress"
-    sinks = make_sinks(registry, [*ALWAYS, live, *(sink or ())])
+    sinks = watched_sinks(registry, sink or (), headless=headless)
     session = None
     if groot:
         from explore_bt.debug import DebugSession

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,6 +9,7 @@ import cv2
 
 from explore_bt.errors import UserError
 from explore_bt.export.video.film import HEIGHT, WIDTH, film, frame_count
+from explore_bt.files import whole_file
 from explore_bt.recording import Recording
 
 __all__ = ["write_video"]
@@ -39,15 +38,8 @@ def write_video(
         UserError: this build of OpenCV cannot write such files.
         OSError: the folder cannot be written.
     """
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=".mp4", dir=path.parent)
-    os.close(handle)
-    try:
-        _write(recording, temporary, rate_hz, speed, on_frame)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    with whole_file(path) as temporary:
+        _write(recording, str(temporary), rate_hz, speed, on_frame)
     return path
 
 
