@@ -32,16 +32,15 @@ class ClearanceWindow:
 
     def cut(self, grid: OccupancyGrid, near: Pose2, seen: NDArray[np.float64]) -> None:
         """Take the map around ``near``, without the obstacles that the scan's points (N, 2) show."""
-        row, col = grid.cell_of(near.x, near.y)
-        reach = int(self._reach_m / grid.resolution_m)
-        row0, col0 = max(0, row - reach), max(0, col - reach)
-        cells = grid.cells[row0 : max(row0, row + reach + 1), col0 : max(col0, col + reach + 1)]
-        if cells.size == 0:
+        window = grid.window_around(near.x, near.y, self._reach_m)
+        if window.is_empty:
             self._field = np.zeros((1, 1), dtype=np.float32)
             return
         resolution = grid.resolution_m
-        origin = (grid.origin_xy[0] + col0 * resolution, grid.origin_xy[1] + row0 * resolution)
-        self._field = clearance_field(_without_seen(OccupancyGrid(cells, resolution, origin), seen))
+        corner = np.array([window.col0, window.row0]) * resolution
+        origin = (grid.origin_xy[0] + float(corner[0]), grid.origin_xy[1] + float(corner[1]))
+        cut = OccupancyGrid(grid.cells[window.slices], resolution, origin)
+        self._field = clearance_field(_without_seen(cut, seen))
         self._origin_xy = origin
         self._resolution_m = resolution
 

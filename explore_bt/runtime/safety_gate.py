@@ -90,6 +90,7 @@ class SafetyGate:
         self._window = ClearanceWindow(LOOK_AHEAD_M)
         self._is_held = False
         self._around: Surroundings | None = None
+        self._walkers = np.empty((0, 7))
         self._from_moving: WalkingDistance | None = None
         self._from_hidden: WalkingDistance | None = None
         self._unsure_until_s = -math.inf
@@ -104,6 +105,7 @@ class SafetyGate:
         """
         points = surroundings.points
         self._around = surroundings
+        self._walkers = _walkers(surroundings)
         for thing in surroundings.moving:  # it is kept clear of by itself, and will not be there for ever
             points = points[np.hypot(*(points - thing.xy).T) > thing.radius_m + BESIDE_M]
         is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
@@ -178,22 +180,16 @@ class SafetyGate:
         times_s = now_s + way.times_s[moving]
         spare_m = np.maximum(
             away_m[moving] - WALKING_MPS * (times_s - around.stamp_s),
-            self._spare_in_the_open_m(way.poses[moving, :2], times_s, around),
+            self._spare_in_the_open_m(way.poses[moving, :2], times_s),
         )
         if (spare_m.size and spare_m.min() < MOVING_MARGIN_M) or away_m[-1] < min(away_m[0], MOVING_MARGIN_M):
             return f"someone {max(away_m[0], 0.0):.1f} m away could be met before the robot stands"
         return ""
 
     def _spare_in_the_open_m(
-        self, places: NDArray[np.float64], times_s: NDArray[np.float64], around: Surroundings
+        self, places: NDArray[np.float64], times_s: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        walkers = np.array(
-            [
-                (*thing.xy, *thing.velocity_mps, thing.radius_m, thing.stamp_s, thing.velocity_off_mps)
-                for thing in around.moving
-            ]
-        )
-        spare_m = spare_of_walkers_m(places, times_s, walkers, WALKING_MPS, STARTING_MPS2)
+        spare_m = spare_of_walkers_m(places, times_s, self._walkers, WALKING_MPS, STARTING_MPS2)
         return spare_m - self._radius_m
 
     def _fault_by_hidden(self, way: WayToRest, now_s: float, around: Surroundings) -> str:
@@ -227,6 +223,15 @@ class SafetyGate:
             if fault := _shortfall(room_m, needed_m + margin_m, obstacle, gain_m if count > 1 else 0.0):
                 return fault
         return ""
+
+
+def _walkers(around: Surroundings) -> NDArray[np.float64]:
+    """(K, 7) as ``spare_of_walkers_m`` takes those who move."""
+    rows = [
+        (*thing.xy, *thing.velocity_mps, thing.radius_m, thing.stamp_s, thing.velocity_off_mps)
+        for thing in around.moving
+    ]
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
 def _walking_from_moving(around: Surroundings, near: Pose2) -> WalkingDistance | None:
