@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, HeldBy, Surroundings
 from explore_bt.runtime.pose_predictor import PosePredictor
 from explore_bt.runtime.safety_gate import SafetyGate
-from explore_bt.types import Estimate, Health, MotionState, Path, Scan2D, Twist2
+from explore_bt.types import Estimate, Health, MotionLimits, MotionState, Path, Scan2D, Twist2
 
 __all__ = ["Pilot"]
 
@@ -23,10 +24,20 @@ _REST = 1e-4
 
 
 class Pilot:
-    """Runs once per control period; every command passes the gate."""
+    """Runs once per control period; every command passes the gate.
 
-    def __init__(self, controller: Controller, gate: SafetyGate, driver: Driver) -> None:
+    Args:
+        controller: asked for the next twist.
+        gate: has the last word.
+        driver: is sent it.
+        limits: of the controller; the gate's brake may be harder.
+    """
+
+    def __init__(
+        self, controller: Controller, gate: SafetyGate, driver: Driver, limits: MotionLimits
+    ) -> None:
         self._controller = controller
+        self._limits = limits
         self._gate = gate
         self._driver = driver
         self._predictor = PosePredictor(driver.command_delay_s)
@@ -95,7 +106,7 @@ class Pilot:
         if self._unseen is not None:
             surroundings, self._unseen = self._unseen, None
             self._controller.see(surroundings)
-        self._output = self._controller.step(now, scan, self.motion, dt_s)
+        self._output = self._controller.step(now, scan, self._motion_within_limits(), dt_s)
         fault = _unfit_to_drive(estimate, scan, now_s)
         if fault:
             following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
@@ -109,6 +120,18 @@ class Pilot:
         elif self._blocked_since_s is None:
             self._blocked_since_s = now_s
         self._send(following, now_s)
+
+    def _motion_within_limits(self) -> MotionState:
+        """What the controller goes on from: not what it could not have come to, nor could end before rest.
+
+        A brake harder than its limits is let go of by the gate, whose jerk is the brake's.
+        """
+        limits, motion = self._limits, self.motion
+        speed_mps, before = abs(motion.twist.linear_mps), motion.linear_acceleration_mps2
+        most = limits.acceleration_mps2
+        if before * motion.twist.linear_mps <= 0.0:
+            most = min(most, math.sqrt(2.0 * limits.jerk_mps3 * speed_mps))
+        return replace(motion, linear_acceleration_mps2=min(max(before, -most), most))
 
     def pause(self, reason: str, now_s: float, dt_s: float) -> None:
         """One control period at rest that the controller knows nothing of: the path is gone on with later."""

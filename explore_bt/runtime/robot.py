@@ -123,8 +123,9 @@ class Robot:
         self._poses_before = cut.memory.poses_before if cut else len(self.slam.trajectory().stamps_s)
         self._planner.setup(context)
         self._controller.setup(context)
-        gate = SafetyGate(self.driver.footprint_radius_m, limits)
-        self.pilot = Pilot(self._controller, gate, self.driver)
+        brake = self._mission.limits.of_brake(self.driver.limits)
+        gate = SafetyGate(self.driver.footprint_radius_m, brake)
+        self.pilot = Pilot(self._controller, gate, self.driver, limits)
         self.scores = Scorekeeper(self.home, context.truth)
         parts: dict[str, Remembering] = {
             "scores": self.scores,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -33,6 +33,8 @@ what has just appeared, but its noise may not stop the robot in every door, so a
 HASTE_MARGIN_M = 0.02
 CRAWL_MPS, FAST_MPS = 0.1, 0.3
 """More for all of them beyond a crawl, all of it when fast, where less time is left to find out."""
+MAP_ERROR_M = 0.02
+"""By so much a wall may stand before its cells; it counts where the scans cannot say, beside who moves."""
 LOOK_AHEAD_M = 1.5
 """How far around the robot map and points are looked at: any stop from 0.8 m/s, plus the footprint."""
 INSIDE_SHARE = 0.6
@@ -61,6 +63,7 @@ CAUTIOUS_MPS = 0.14
 """So slow the robot goes on, though someone might step out: else it would never pass a door."""
 BESIDE_M = 0.15
 """Returns so near to what was seen of a moving thing are its own."""
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +84,12 @@ class _Brake:
 
 
 class SafetyGate:
-    """Checks commands for one robot and brakes for it when it must."""
+    """Checks commands for one robot and brakes for it when it must.
+
+    Args:
+        footprint_radius_m: of the robot.
+        limits: of the brake; it may be harder than anything the controller does.
+    """
 
     def __init__(self, footprint_radius_m: float, limits: MotionLimits) -> None:
         self._radius_m = footprint_radius_m
@@ -91,6 +99,7 @@ class SafetyGate:
         self._is_held = False
         self._around: Surroundings | None = None
         self._walkers = np.empty((0, 7))
+        self._map_margin_m = 0.0
         self._from_moving: WalkingDistance | None = None
         self._from_hidden: WalkingDistance | None = None
         self._unsure_until_s = -math.inf
@@ -110,6 +119,7 @@ class SafetyGate:
             points = points[np.hypot(*(points - thing.xy).T) > thing.radius_m + BESIDE_M]
         is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
         self._scans.append(np.ascontiguousarray(points[is_near]))
+        self._map_margin_m = MAP_ERROR_M if len(points) < len(surroundings.points) else 0.0
         self._window.cut(surroundings.grid, near, points)  # the map answers for the wall beside whoever moves
         self._from_moving = _walking_from_moving(surroundings, near)
         self._from_hidden = _walking_from_hidden(surroundings, near)
@@ -130,7 +140,7 @@ class SafetyGate:
             dt_s: the control period.
             now_s: the time, on the clock of the scans' stamps.
         """
-        following = _state_after(wanted, motion, dt_s)
+        following = _state_after(self._let_go_of_brake(wanted, motion, dt_s), motion, dt_s)
         way = way_to_rest(following, pose, motion, self._limits, dt_s)
         held_by, fault = HeldBy.OBSTACLE, self._fault_on_the_way(way, following)
         if not fault:
@@ -139,6 +149,16 @@ class SafetyGate:
             return GateDecision(self._next_of_brake(motion, dt_s), fault, held_by)
         self._brake = _Brake(following)
         return GateDecision(following)
+
+    def _let_go_of_brake(self, wanted: Twist2, motion: MotionState, dt_s: float) -> Twist2:
+        """A brake harder than the controller ever drives ends under its own jerk, before that one goes on."""
+        change = self._limits.jerk_mps3 * dt_s
+        wished = (wanted.linear_mps - motion.twist.linear_mps) / dt_s
+        before = motion.linear_acceleration_mps2
+        if abs(wished - before) <= change + _ROUNDING:
+            return wanted
+        slope = min(max(wished, before - change), before + change)
+        return replace(wanted, linear_mps=motion.twist.linear_mps + slope * dt_s)
 
     def brake(self, motion: MotionState, dt_s: float) -> MotionState:
         """The next state of a controlled stop, whatever the controller wants."""
@@ -155,8 +175,9 @@ class SafetyGate:
         ahead = way.poses
         if not np.any(ahead[:, :2] - ahead[0, :2]):
             return ""  # a disc turning on the spot touches nothing that it does not touch already
-        on_grid = self._window.clearance_m(ahead[:, :2])
-        in_map = _shortfall(on_grid, self._radius_m, "obstacle or unknown space in the map")
+        on_grid = self._window.clearance_m(ahead[:, :2], between_cells=self._map_margin_m > 0.0)
+        needed_m = self._radius_m + self._map_margin_m
+        in_map = _shortfall(on_grid, needed_m, "obstacle or unknown space in the map")
         return in_map or self._fault_in_scans(ahead, following)
 
     def _fault_by_people(self, way: WayToRest, now_s: float) -> str:
