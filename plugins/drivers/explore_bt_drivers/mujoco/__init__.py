@@ -1,0 +1,1 @@
+"""The physical simulator: a balancing robot in MuJoCo."""
