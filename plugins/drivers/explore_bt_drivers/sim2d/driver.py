@@ -9,10 +9,10 @@ from explore_bt.clock import Clock
 from explore_bt.errors import WorldError
 from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, Resumption, RobotContext
 from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt_drivers.people import Town
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.sim2d.simulation import Simulation
 from explore_bt_drivers.sim2d.start import choose_start
-from explore_bt_drivers.sim2d.town import Town
 from explore_bt_drivers.sim2d.truth import Sim2dTruth
 from explore_bt_drivers.world import World, load_world, observable_floor
 
@@ -53,15 +53,20 @@ class Sim2d(Driver):
         world = load_world(options.world)
         self._start = choose_start(world, context.start, options.radius)
         stand = _stand(world, context.resumed, options.radius) or self._start
-        town = Town(world, options, self._start)
+        town = Town(
+            world,
+            self._start.xy,
+            options.walkers,
+            walker_radius_m=options.walker_radius,
+            walker_speed_mps=options.walker_speed,
+        )
         rehearsal = Simulation(world, options, stand, context, town.crowd(context.rng("walkers")))
         rehearsal.body.command(Twist2(0.1, 0.1))
         rehearsal.wait_until(rehearsal.now_s() + _WARM_UP_S)
         observable_floor(world, self._start.xy, options.radius, 0.0)
         crowd = town.crowd(context.rng("walkers"))
         self._simulation = Simulation(world, options, stand, context, crowd)
-        body = self._simulation.body
-        self._truth = Sim2dTruth(world, self._start, body, crowd, options.radius, options.lidar_range)
+        self._truth = Sim2dTruth(world, self._start, self._simulation, options.radius, options.lidar_range)
 
     @property
     def clock(self) -> Clock:

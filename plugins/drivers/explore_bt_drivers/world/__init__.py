@@ -2,14 +2,19 @@
 
 from explore_bt_drivers.world.observable import fitting_cells, observable_floor
 from explore_bt_drivers.world.plan import Person, Stand, Thing, WorldPlan
-from explore_bt_drivers.world.solid import Solid
+from explore_bt_drivers.world.ramps import Ramp
+from explore_bt_drivers.world.scenery import Scenery
+from explore_bt_drivers.world.solid import Material, Solid
 from explore_bt_drivers.world.versions import with_every_stand, with_solids
 from explore_bt_drivers.world.world import World, load_world
 from explore_bt_drivers.world.world_file import FORMAT, read_world_file
 
 __all__ = [
     "FORMAT",
+    "Material",
     "Person",
+    "Ramp",
+    "Scenery",
     "Solid",
     "Stand",
     "Thing",

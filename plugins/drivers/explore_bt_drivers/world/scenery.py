@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 
-from explore_bt_drivers.sim2d.motion import ON_STEP, STEP_S
-from explore_bt_drivers.world import Stand, World, with_solids
 from explore_bt_drivers.world.index import clearance_of
+from explore_bt_drivers.world.plan import Stand
 from explore_bt_drivers.world.solid import outline_edges
+from explore_bt_drivers.world.versions import with_solids
+from explore_bt_drivers.world.world import World
 
 __all__ = ["Scenery"]
 
 _SPARE_M = 0.01
 _NEVER = 2**62
+_ON_STEP = 1e-6
+"""A time this near to a step's (in steps) is that step's."""
 
 
 class Scenery:
@@ -24,27 +27,35 @@ class Scenery:
 
     Attributes:
         world: the version in force.
+        stands: the number of the stand of each of its things.
     """
 
-    def __init__(self, world: World, footprint_m: float) -> None:
+    def __init__(self, world: World, footprint_m: float, step_s: float) -> None:
+        """Begin as drawn.
+
+        Args:
+            world: as drawn.
+            footprint_m: radius of the robot.
+            step_s: length of an internal step; step k belongs to time ``k * step_s``.
+        """
         self.world = world
         self._drawn = world
         self._room_m = footprint_m + _SPARE_M
-        self._dues = [[_step_of(stand) for stand in thing.stands] for thing in world.things]
-        self._stands = (0,) * len(world.things)
-        self._versions = {self._stands: world}
+        self._dues = [[_step_of(stand, step_s) for stand in thing.stands] for thing in world.things]
+        self.stands = (0,) * len(world.things)
+        self._versions = {self.stands: world}
         self._steps = sorted(step for dues in self._dues for step in dues)
 
     def settle(self, step: int, x: float, y: float) -> World:
         """Bring the world up to an internal step, the robot's centre being at x, y; the version in force."""
         stands = self._wanted(step)
-        if stands != self._stands:
+        if stands != self.stands:
             self._settle(stands, x, y)
         return self.world
 
     def next_step(self, step: int) -> int:
         """The internal step after ``step`` at which to settle again: a thing is due, or waits."""
-        if self._wanted(step) != self._stands:
+        if self._wanted(step) != self.stands:
             return step + 1
         place = bisect_right(self._steps, step)
         return self._steps[place] if place < len(self._steps) else _NEVER
@@ -54,8 +65,8 @@ class Scenery:
         return tuple([bisect_right(dues, step) - 1 for dues in self._dues])
 
     def _settle(self, wanted: tuple[int, ...], x: float, y: float) -> None:
-        things = enumerate(zip(self._stands, wanted, strict=True))
-        self._stands = tuple(
+        things = enumerate(zip(self.stands, wanted, strict=True))
+        self.stands = tuple(
             [to if to != now and self._is_clear(thing, to, x, y) else now for thing, (now, to) in things]
         )
         self.world = self._version()
@@ -67,12 +78,12 @@ class Scenery:
 
     def _version(self) -> World:
         """The world with its things as they stand; each version is built once."""
-        if self._stands not in self._versions:
-            pairs = zip(self._drawn.things, self._stands, strict=True)
+        if self.stands not in self._versions:
+            pairs = zip(self._drawn.things, self.stands, strict=True)
             solids = [solid for thing, now in pairs for solid in thing.stands[now].solids]
-            self._versions[self._stands] = with_solids(self._drawn, solids)
-        return self._versions[self._stands]
+            self._versions[self.stands] = with_solids(self._drawn, solids)
+        return self._versions[self.stands]
 
 
-def _step_of(stand: Stand) -> int:
-    return math.ceil(stand.begin_s / STEP_S - ON_STEP)
+def _step_of(stand: Stand, step_s: float) -> int:
+    return math.ceil(stand.begin_s / step_s - _ON_STEP)

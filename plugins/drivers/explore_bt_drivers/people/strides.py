@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Iterable, Iterator
 
-from explore_bt_drivers.sim2d.walks import Knot
+from explore_bt_drivers.people.walks import Knot
 
 __all__ = ["ACCELERATION_MPS2", "TURN_MPS", "as_people_walk"]
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from explore_bt.errors import WorldError
 from explore_bt.exploration import Travel
-from explore_bt_drivers.sim2d.strides import as_people_walk
-from explore_bt_drivers.sim2d.walks import Walk
+from explore_bt_drivers.people.strides import as_people_walk
+from explore_bt_drivers.people.walks import Walk
 from explore_bt_drivers.world import World, with_every_stand
 from explore_bt_drivers.world.index import way_fits
 from explore_bt_drivers.world.observable import reachable_cells
