@@ -53,6 +53,11 @@ class Track:
         self._rows[self.last_step - self.first_step] = row
 
     @property
+    def now(self) -> Row:
+        """(15,) view: the newest state."""
+        return self._rows[self.last_step - self.first_step, :]
+
+    @property
     def now_s(self) -> float:
         """Time of the newest state, seconds on the mission's clock."""
         return self.last_step * STEP_S
@@ -60,7 +65,7 @@ class Track:
     @property
     def times_s(self) -> NDArray[np.float64]:
         """(N,) float64: time of each state, seconds on the mission's clock."""
-        return np.arange(self.first_step, self.last_step + 1) * STEP_S
+        return np.arange(self.first_step, self.last_step + 1, dtype=np.float64) * STEP_S
 
     @property
     def positions(self) -> NDArray[np.float64]:

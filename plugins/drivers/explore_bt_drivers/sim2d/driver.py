@@ -12,9 +12,8 @@ from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
 from explore_bt_drivers.people import Town
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.sim2d.simulation import Simulation
-from explore_bt_drivers.sim2d.start import choose_start
 from explore_bt_drivers.sim2d.truth import Sim2dTruth
-from explore_bt_drivers.world import World, load_world, observable_floor
+from explore_bt_drivers.world import World, choose_start, load_world, observable_floor
 
 __all__ = ["Sim2d"]
 

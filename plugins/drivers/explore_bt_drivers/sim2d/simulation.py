@@ -7,8 +7,8 @@ import math
 from explore_bt.clock import ManualClock
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Measurement, Pose2
+from explore_bt_drivers.battery import BatteryGauge
 from explore_bt_drivers.people import Crowd
-from explore_bt_drivers.sim2d.battery import BatteryGauge
 from explore_bt_drivers.sim2d.body import Body
 from explore_bt_drivers.sim2d.imu import InertialUnit
 from explore_bt_drivers.sim2d.lidar import Lidar

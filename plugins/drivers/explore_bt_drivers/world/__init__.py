@@ -5,6 +5,7 @@ from explore_bt_drivers.world.plan import Person, Stand, Thing, WorldPlan
 from explore_bt_drivers.world.ramps import Ramp
 from explore_bt_drivers.world.scenery import Scenery
 from explore_bt_drivers.world.solid import Material, Solid
+from explore_bt_drivers.world.start import choose_start
 from explore_bt_drivers.world.versions import with_every_stand, with_solids
 from explore_bt_drivers.world.world import World, load_world
 from explore_bt_drivers.world.world_file import FORMAT, read_world_file
@@ -20,6 +21,7 @@ __all__ = [
     "Thing",
     "World",
     "WorldPlan",
+    "choose_start",
     "fitting_cells",
     "load_world",
     "observable_floor",

@@ -9,7 +9,8 @@ import numpy as np
 
 from explore_bt.errors import WorldError
 from explore_bt.types import Pose2
-from explore_bt_drivers.world import World, fitting_cells
+from explore_bt_drivers.world.observable import fitting_cells
+from explore_bt_drivers.world.world import World
 
 __all__ = ["choose_start", "widest_spot"]
 

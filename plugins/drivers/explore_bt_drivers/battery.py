@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from explore_bt.types import Battery
-from explore_bt_drivers.sim2d.body import Track
 
 __all__ = ["BatteryGauge"]
 
 _RATE_HZ = 1.0
+
+
+class _Track(Protocol):
+    """The track of a simulated body."""
+
+    def due(self, rate_hz: float) -> int:
+        """How many samples of a sensor are due by its newest state."""
 
 
 class BatteryGauge:
@@ -17,11 +25,11 @@ class BatteryGauge:
         self._life_s = life_s
         self._samples = 0
 
-    def begin(self, track: Track) -> None:
+    def begin(self, track: _Track) -> None:
         """Measure from here on: a resumed run begins in the middle."""
         self._samples = track.due(_RATE_HZ)
 
-    def measure(self, track: Track) -> list[Battery]:
+    def measure(self, track: _Track) -> list[Battery]:
         """The samples due since the last call."""
         due = track.due(_RATE_HZ)
         fresh = range(self._samples + 1, due + 1)
