@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from explore_bt.clock import Clock
 from explore_bt.interfaces.plugin import Plugin, RobotContext
 from explore_bt.interfaces.truth import GroundTruth
-from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt.types import BodyFault, BodyShape, Measurement, MotionLimits, Pose2, Twist2
 
 __all__ = ["Driver"]
 
@@ -45,6 +45,11 @@ class Driver(Plugin):
         """Radius of the circular footprint about ``base_link``."""
 
     @property
+    def shape(self) -> BodyShape:
+        """What else is to be known of the body, where the lidar is a 3D one."""
+        return BodyShape()
+
+    @property
     @abstractmethod
     def limits(self) -> MotionLimits:
         """What the body can do; the mission may ask for less."""
@@ -70,6 +75,18 @@ class Driver(Plugin):
     @abstractmethod
     def stop(self) -> None:
         """Halt as fast as is safe for the body. Idempotent, from any thread, never raises."""
+
+    @property
+    def fault(self) -> BodyFault | None:
+        """Why the body cannot drive now: it has fallen, its own emergency stop is pressed. Cheap.
+
+        Commands are not heard meanwhile, the stack above holds still.
+        """
+        return None
+
+    def recover(self) -> bool:
+        """Begin to get out of ``fault``, without waiting for it; False where the body cannot."""
+        return False
 
     @abstractmethod
     def close(self) -> None:

@@ -7,7 +7,7 @@ import math
 from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, HeldBy, Surroundings
 from explore_bt.runtime.pose_predictor import PosePredictor
 from explore_bt.runtime.safety_gate import SafetyGate
-from explore_bt.types import Estimate, Health, MotionState, Path, Scan2D, Twist2
+from explore_bt.types import BodyFault, Estimate, Health, MotionState, Path, Scan2D, Twist2
 
 __all__ = ["Pilot"]
 
@@ -56,6 +56,15 @@ class Pilot:
         twist = self.motion.twist
         return abs(twist.linear_mps) < _REST and abs(twist.angular_rps) < _REST
 
+    @property
+    def body_fault(self) -> BodyFault | None:
+        """Why the body cannot drive now; None while it can."""
+        return self._driver.fault
+
+    def recover_body(self) -> bool:
+        """Have the body begin to get out of its fault; False where it cannot."""
+        return self._driver.recover()
+
     def follow(self, path: Path) -> None:
         """Drive along ``path`` from the next control step on."""
         self.path = path
@@ -96,10 +105,11 @@ class Pilot:
             surroundings, self._unseen = self._unseen, None
             self._controller.see(surroundings)
         self._output = self._controller.step(now, scan, self.motion, dt_s)
-        fault = _unfit_to_drive(estimate, scan, now_s)
+        body = self.body_fault
+        fault = body.reason if body else _unfit_to_drive(estimate, scan, now_s)
         if fault:
             following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
-            self.held_by = HeldBy.SENSES
+            self.held_by = HeldBy.BODY if body else HeldBy.SENSES
         else:
             decision = self._gate.decide(self._output.twist, now.T_map_base, self.motion, dt_s, now_s)
             following, self.gate_reason = decision.motion, decision.reason

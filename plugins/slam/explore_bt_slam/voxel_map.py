@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.levelling import LevelCloud
 from explore_bt.types import GridWindow, Pose2
-from explore_bt_slam.level_cloud import LevelCloud
 from explore_bt_slam.projection import mark_columns, project
 from explore_bt_slam.voxel_kernels import BRICK, DECISIVE, allocate, take_in, trace
 

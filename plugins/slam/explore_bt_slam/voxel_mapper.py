@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.levelling import LevelCloud
 from explore_bt.types import GridWindow, Pose2
 from explore_bt_slam.canvas import Canvas
-from explore_bt_slam.level_cloud import LevelCloud
 from explore_bt_slam.mapper import KeptSweep, Mapper, apart, has_moved
 from explore_bt_slam.voxel_map import Columns, Heights, VoxelMap
 

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from explore_bt_slam.attitude import AttitudeFilter
 
+from explore_bt.levelling import AttitudeFilter
 from explore_bt.types import Imu
 
 STEP_S = 0.004

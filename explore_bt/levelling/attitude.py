@@ -18,8 +18,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from explore_bt.levelling.arrays import Floats
 from explore_bt.types import Imu
-from explore_bt_slam.arrays import Floats
 
 __all__ = ["AttitudeFilter", "AttitudeNoise"]
 

@@ -6,12 +6,10 @@ from collections.abc import Iterator
 from itertools import chain
 
 import numpy as np
-from explore_bt_slam.attitude import AttitudeFilter
-from explore_bt_slam.level_cloud import LevelCloud, fault_of_cloud, level
-from explore_bt_slam.virtual_scan import virtual_scan
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from explore_bt.levelling import AttitudeFilter, LevelCloud, fault_of_cloud, level, virtual_scan
 from explore_bt.testing.balancing_robot import BalancingRobot
 from explore_bt.testing.scene3 import Prism, Scene3
 from explore_bt.types import Imu, PointCloud, Pose2

@@ -8,9 +8,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from explore_bt.levelling.arrays import Floats, Singles
+from explore_bt.levelling.attitude import AttitudeFilter
 from explore_bt.types import PointCloud
-from explore_bt_slam.arrays import Floats, Singles
-from explore_bt_slam.attitude import AttitudeFilter
 
 __all__ = ["LevelCloud", "fault_of_cloud", "level"]
 
