@@ -16,9 +16,9 @@ _TEXEL_M = 0.01
 _MOST_TEXELS = 8_000_000
 _LARGEST_SIDE = 8192
 _GAP = 2
-_GRAINS = ((0.025, 0.16), (0.08, 0.22), (0.30, 0.20))
-"""Size of a blot in metres and its share of the brightness, coarse enough for ORB to find again from afar."""
-_PICTURES_PER_M2 = 1.2
+_GRAINS = ((0.04, 0.24), (0.13, 0.24), (0.50, 0.16))
+"""Side of a tile in metres and its share of the brightness: corners for ORB from near and from afar."""
+_PICTURES_PER_M2 = 1.5
 _PICTURE_M = (0.06, 0.45)
 _LEAST_SIDE_M = 0.5
 _MOST_PICTURES = 4000
@@ -27,8 +27,8 @@ _MOST_PICTURES = 4000
 class Atlas:
     """Packs the patches of a surface into a picture and paints them.
 
-    Features of repeated textures match where they should not, so every patch has paint of its own: noise of
-    three grains over its tint, and coloured rectangles where it is wide enough for pictures on the wall.
+    Features of repeated textures match where they should not, so every patch has paint of its own: tiles of
+    three sizes over its tint, and coloured rectangles where it is wide enough for pictures on the wall.
 
     Attributes:
         pixels: (rows, cols, 3) uint8 RGB.
@@ -54,7 +54,7 @@ class Atlas:
             tint[y : y + h, x : x + w] = colour
         self._hang_pictures(tint, surface, rng)
         light = _noise(shape, self._texel_m, rng)
-        return np.asarray(cv2.multiply(tint, cv2.merge([light] * 3), scale=1.1 / 255.0))
+        return np.asarray(cv2.multiply(tint, cv2.merge([light] * 3), scale=1.3 / 255.0))
 
     def _hang_pictures(self, pixels: NDArray[np.uint8], surface: Surface, rng: np.random.Generator) -> None:
         """Coloured rectangles on those walls that are wide and high enough, in proportion to their area."""
@@ -99,11 +99,11 @@ def _packed(cells: NDArray[np.int64], width: int) -> tuple[NDArray[np.int64], in
 
 
 def _noise(shape: tuple[int, int], texel_m: float, rng: np.random.Generator) -> NDArray[np.uint8]:
-    """(rows, cols) uint8 brightness, darkened from 255 by blots of every grain."""
+    """(rows, cols) uint8 brightness, darkened from 255 by tiles of every grain."""
     light = np.full(shape, 255, dtype=np.uint8)
     for grain_m, share in _GRAINS:
         grain = max(grain_m / texel_m, 1.0)
         rows, cols = (math.ceil(side / grain) + 1 for side in shape)
-        blots = rng.integers(0, round(255 * share), (rows, cols), dtype=np.uint8)
-        light = cv2.subtract(light, cv2.resize(blots, (shape[1], shape[0]), interpolation=cv2.INTER_LINEAR))
+        tiles = rng.integers(0, round(255 * share), (rows, cols), dtype=np.uint8)
+        light = cv2.subtract(light, cv2.resize(tiles, (shape[1], shape[0]), interpolation=cv2.INTER_NEAREST))
     return light

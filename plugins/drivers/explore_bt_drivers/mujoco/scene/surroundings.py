@@ -81,6 +81,12 @@ class Surroundings:
                 self.scene.crowd.foresee(self._known_s)
             _place(self.ways, self._people, time_s, data.mocap_pos)
 
+    def place(self, data: mujoco.MjData, time_s: float) -> None:
+        """Put everything where it was at one of the last seconds, into other data of the same model."""
+        self._stand(data, self.stands_at(time_s))
+        if len(self._people):
+            _place(self.ways, self._people, time_s, data.mocap_pos)
+
     def stands_at(self, time_s: float) -> Stands:
         """Where things stood at a time of the last seconds."""
         return next(stands for begin_s, stands in reversed(self._history) if begin_s <= time_s)
@@ -96,10 +102,13 @@ class Surroundings:
             self._history.append((step * STEP_S, stands))
         while len(self._history) > 1 and self._history[1][0] < step * STEP_S - _MEMORY_S:
             self._history.popleft()
+        self._stand(data, stands)
+        self._due_step = self._scenery.next_step(step)
+
+    def _stand(self, data: mujoco.MjData, stands: Stands) -> None:
         for bodies, now in zip(self._stands, stands, strict=True):
             data.mocap_pos[bodies, 2] = PARKED_M
             data.mocap_pos[bodies[now], 2] = 0.0
-        self._due_step = self._scenery.next_step(step)
 
 
 def _mocaps(model: mujoco.MjModel, names: list[str]) -> NDArray[np.int64]:
