@@ -183,8 +183,8 @@ def main() -> None:
 
 
 _HEADER = (
-    "| seed | outcome | mapped | falls | contacts | ATE | closest | home | path | time | real time × | shares |"
-    "\n"
+    "| seed | outcome | mapped | falls | contacts | ATE | closest | home | path | time "
+    "| real time × | shares |\n"
     "|---|---|---|---|---|---|---|---|---|---|---|---|"
 )
 
