@@ -5,18 +5,11 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from explore_bt_drivers.mujoco.body import (
-    BODY_HEIGHT_M,
-    BODY_RADIUS_M,
-    FORESIGHT_S,
-    Body,
-    Joints,
-    Stance,
-    add_robot,
-)
+from explore_bt_drivers.mujoco.body import Body, Joints, Stance, add_robot
 from explore_bt_drivers.mujoco.body.balance import CONTROL_S
 from explore_bt_drivers.mujoco.body.foresight import Foresight
 from explore_bt_drivers.mujoco.body.plant import Plant
+from explore_bt_drivers.mujoco.figures import BODY_HEIGHT_M, BODY_RADIUS_M, FORESIGHT_S
 from explore_bt_drivers.mujoco.track import STEP_S
 
 from explore_bt.types import MotionLimits, Pose2, Twist2

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2, WheelOdometry, wrap_angle
-from explore_bt_drivers.mujoco.body import TRACK_M, WHEEL_RADIUS_M, pitch_of
+from explore_bt_drivers.mujoco.body import pitch_of
+from explore_bt_drivers.mujoco.figures import TRACK_M, WHEEL_RADIUS_M
 from explore_bt_drivers.mujoco.options import MujocoOptions
 from explore_bt_drivers.mujoco.track import Track
 

@@ -20,6 +20,7 @@ from explore_bt.units import (
     Length,
     Speed,
 )
+from explore_bt_drivers.mujoco.figures import BODY_RADIUS_M
 
 __all__ = ["MujocoOptions"]
 
@@ -90,6 +91,11 @@ class MujocoOptions(PluginOptions):
             for name in given.keys() & _NOT_HERE.keys():
                 raise ValueError(f"{name} is of sim2d; {_NOT_HERE[name]}")
         return given
+
+    @property
+    def footprint_m(self) -> float:
+        """Radius that is kept clear."""
+        return max(self.radius, BODY_RADIUS_M)
 
     @property
     def limits(self) -> MotionLimits:

@@ -11,12 +11,9 @@ from explore_bt.interfaces import GroundTruth
 from explore_bt.types import OccupancyGrid, Pose2
 from explore_bt_drivers.sim2d.motion import STEP_S
 from explore_bt_drivers.sim2d.simulation import Simulation
-from explore_bt_drivers.world import World, observable_floor
+from explore_bt_drivers.world import SPARE_M, World, observable_floor
 
-__all__ = ["SPARE_M", "Sim2dTruth"]
-
-SPARE_M = 0.025
-"""A way counts only if it leaves this much on either side: through an exact fit no lidar guides a robot."""
+__all__ = ["Sim2dTruth"]
 
 
 class Sim2dTruth(GroundTruth):

@@ -8,13 +8,16 @@ import cv2
 import numpy as np
 
 from explore_bt.errors import WorldError
+from explore_bt.interfaces import Resumption
 from explore_bt.types import Pose2
 from explore_bt_drivers.world.observable import fitting_cells
 from explore_bt_drivers.world.world import World
 
-__all__ = ["choose_start", "widest_spot"]
+__all__ = ["choose_start", "stand_of", "widest_spot"]
 
 _TOUCH_M = 1e-6
+_MENDED_M = 0.02
+"""So much nearer to a thing may a pose that went through a recording be."""
 
 
 def choose_start(world: World, wanted: Pose2 | None, radius_m: float) -> Pose2:
@@ -35,6 +38,24 @@ def choose_start(world: World, wanted: Pose2 | None, radius_m: float) -> Pose2:
             f"{_nearest_fit(world, start, radius_m)}"
         )
     return start
+
+
+def stand_of(world: World, resumed: Resumption | None, radius_m: float) -> Pose2 | None:
+    """Where a resumed run left the robot; None for one that begins.
+
+    Raises:
+        WorldError: something stands there now.
+    """
+    if resumed is None:
+        return None
+    stand = resumed.true_pose or resumed.pose
+    clearance_m, thing = world.nearest_thing(stand.x, stand.y)
+    if clearance_m < radius_m - _MENDED_M and not world.things:  # things stand elsewhere by then
+        raise WorldError(
+            f"{world.source}: the run broke off at ({stand.x:.2f}, {stand.y:.2f}), {clearance_m:.2f} m from "
+            f"{thing} as it stands now; the robot's radius is {radius_m:g} m. Give the world as it was"
+        )
+    return stand
 
 
 def widest_spot(world: World) -> Pose2:

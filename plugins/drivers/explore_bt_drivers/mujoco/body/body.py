@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from explore_bt.types import MotionLimits, Pose2, Twist2
 from explore_bt_drivers.mujoco.body.balance import CONTROL_S, Balance
-from explore_bt_drivers.mujoco.body.build import WHEEL_RADIUS_M, Joints
-from explore_bt_drivers.mujoco.body.foresight import Foresight
+from explore_bt_drivers.mujoco.body.build import Joints
+from explore_bt_drivers.mujoco.body.foresight import Foresight, Wish
 from explore_bt_drivers.mujoco.body.lift import Lift
 from explore_bt_drivers.mujoco.body.plant import Plant
 from explore_bt_drivers.mujoco.body.posture import pitch_of, planar_pose, roll_of
+from explore_bt_drivers.mujoco.figures import WHEEL_RADIUS_M
 from explore_bt_drivers.mujoco.track import STEP_S, Track
 from explore_bt_drivers.orders import Orders, driven
 
@@ -65,7 +66,7 @@ class Body:
         self._wheel_qvel = [int(wheel.dofadr[0]) for wheel in wheels]
         self._motors = [model.actuator(name).id for name in Joints.WHEELS]
         self._accelerometer = int(model.sensor("accelerometer").adr[0])
-        self._row = np.zeros(15)
+        self._row, self._wish = np.zeros(15), Wish()
         self._lift: Lift | None = None
         self.stance = Stance.STANDING
         self.falls = 0
@@ -80,9 +81,9 @@ class Body:
         return planar_pose(state[:3], state[3:7])
 
     @property
-    def speed_mps(self) -> float:
-        """How fast ``base_link`` moves over the floor."""
-        return float(np.hypot(*self._data.qvel[self._qvel : self._qvel + 2]))
+    def own_speed_mps(self) -> float:
+        """What it is driving at of its own will; being pushed is none of it."""
+        return self._wish.speed_mps
 
     def command(self, twist: Twist2) -> None:
         """Go for a twist from the next control period on."""
@@ -120,10 +121,11 @@ class Body:
         v += 0.5 * (a + a_next) * CONTROL_S
         w += 0.5 * (alpha + alpha_next) * CONTROL_S
         self._setpoint = (v, a_next, w, alpha_next)
-        wish = self._foresight.wish(self._setpoint)
-        torques = self._balance.torques(self._felt(), wish) if self.stance is Stance.STANDING else (0.0, 0.0)
-        for motor, torque in zip(self._motors, torques, strict=True):
-            self._data.ctrl[motor] = torque
+        self._wish = self._foresight.wish(self._setpoint)
+        if self.stance is Stance.STANDING:
+            self._data.ctrl[self._motors] = self._balance.torques(self._felt(), self._wish)
+        else:
+            self._data.ctrl[self._motors] = 0.0
 
     def _felt(self) -> tuple[float, float, float, float]:
         """As encoders and gyroscope of the drive's own would have it, without noise."""

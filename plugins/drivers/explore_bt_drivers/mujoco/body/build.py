@@ -7,19 +7,13 @@ import math
 import mujoco
 
 from explore_bt.types import Pose2
-from explore_bt_drivers.mujoco.scene import GeomGroup
+from explore_bt_drivers.mujoco.figures import TRACK_M, WHEEL_RADIUS_M
+from explore_bt_drivers.mujoco.scene.groups import GeomGroup
 
-__all__ = ["BODY_HEIGHT_M", "BODY_RADIUS_M", "TORQUE_NM", "TRACK_M", "WHEEL_RADIUS_M", "Joints", "add_robot"]
+__all__ = ["TORQUE_NM", "Joints", "add_robot"]
 
-WHEEL_RADIUS_M = 0.0935
-TRACK_M = 0.48
-"""Between the middles of the wheels."""
-BODY_RADIUS_M = 0.27
-"""Circle about ``base_link`` that the upright body keeps within: the rims of its wheels."""
 TORQUE_NM = 5.0
 """The most that a motor gives; with 9 a wheel that was pushed aside spun, and the body fell."""
-BODY_HEIGHT_M = 0.6
-"""What is higher is passed under, leaning included."""
 
 _WHEEL_WIDTH_M, _WHEEL_KG = 0.025, 1.25
 _CHASSIS_KG, _MAST_KG, _LIDAR_KG, _CAMERA_KG = 16.2, 2.1, 0.85, 0.35

@@ -21,11 +21,9 @@ from typing import NamedTuple
 import numpy as np
 
 from explore_bt_drivers.mujoco.body.plant import Plant
+from explore_bt_drivers.mujoco.figures import FORESIGHT_S
 
-__all__ = ["FORESIGHT_S", "Foresight", "Wish"]
-
-FORESIGHT_S = 0.2
-"""So much later than they come set-points are acted on: 1.1 cm past a stop instead of 3.3 cm."""
+__all__ = ["Foresight", "Wish"]
 
 
 class Wish(NamedTuple):

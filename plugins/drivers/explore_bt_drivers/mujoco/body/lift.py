@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
-from explore_bt_drivers.mujoco.body.build import WHEEL_RADIUS_M
 from explore_bt_drivers.mujoco.body.posture import upright
+from explore_bt_drivers.mujoco.figures import WHEEL_RADIUS_M
 from explore_bt_drivers.mujoco.track import STEP_S
 
 __all__ = ["Lift"]

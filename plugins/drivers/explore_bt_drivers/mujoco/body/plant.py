@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from explore_bt_drivers.mujoco.body.build import TRACK_M, WHEEL_RADIUS_M, Joints
+from explore_bt_drivers.mujoco.body.build import Joints
+from explore_bt_drivers.mujoco.figures import TRACK_M, WHEEL_RADIUS_M
 
 __all__ = ["Plant"]
 

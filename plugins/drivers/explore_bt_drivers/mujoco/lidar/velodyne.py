@@ -98,7 +98,7 @@ class VelodyneLike:
         ranges[is_lost] = math.nan
         points = (self._beams * ranges[:, None]).astype(np.float32)
         points.flags.writeable = False
-        return PointCloud(stamp_s, points, self._times, self._mount)
+        return PointCloud(stamp_s, points, self._times, self._mount, range_max_m=self._range_m)
 
     def _cast(
         self,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from explore_bt_drivers.mujoco.scene.build import PARKED_M, Scene
 from explore_bt_drivers.mujoco.track import STEP_S
 from explore_bt_drivers.people.ways import Ways, disc_at
-from explore_bt_drivers.world import Scenery
+from explore_bt_drivers.world import Scenery, Solid, World
 
 __all__ = ["Stands", "Surroundings"]
 
@@ -53,6 +53,22 @@ class Surroundings:
     def ways(self) -> Ways:
         """Of the people, from some seconds ago to beyond the newest step."""
         return self.scene.crowd.ways
+
+    @property
+    def world(self) -> World:
+        """As it stands now."""
+        return self._scenery.world
+
+    def overhangs(self, below_m: float) -> list[Solid]:
+        """What hangs lower than that, as it stands now."""
+        plan = self.scene.world.plan
+        if plan is None:
+            return []
+        movable = {solid for thing in plan.things for stand in thing.stands for solid in stand.overhangs}
+        hanging = [solid for solid in plan.overhangs if solid not in movable]
+        for thing, now in zip(plan.things, self._scenery.stands, strict=True):
+            hanging += thing.stands[now].overhangs
+        return [solid for solid in hanging if solid.low_m < below_m]
 
     def settle(self, data: mujoco.MjData, step: int, x: float, y: float) -> None:
         """Put everything where it is at a physical step; the robot is at x, y, metres."""
