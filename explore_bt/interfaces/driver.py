@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from typing import ClassVar
 
 from explore_bt.clock import Clock
+from explore_bt.interfaces.filming import Filming
 from explore_bt.interfaces.plugin import Plugin, RobotContext
 from explore_bt.interfaces.truth import GroundTruth
 from explore_bt.types import BodyFault, BodyShape, Measurement, MotionLimits, Pose2, Twist2
@@ -21,6 +23,8 @@ class Driver(Plugin):
     """
 
     kind = "driver"
+    films: ClassVar[bool] = False
+    """Whether ``filming`` gives pictures: asked before anything is set up."""
 
     @abstractmethod
     def setup(self, context: RobotContext) -> None:
@@ -94,4 +98,12 @@ class Driver(Plugin):
 
     def truth(self) -> GroundTruth | None:
         """The truth, where the driver is a simulator."""
+        return None
+
+    def filming(self, size: tuple[int, int]) -> Filming | None:  # noqa: ARG002  # most worlds have no looks
+        """Pictures of the simulated world, ``size`` being width and height in pixels; after ``setup``.
+
+        Raises:
+            UserError: what draws them is not installed.
+        """
         return None

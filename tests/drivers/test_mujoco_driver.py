@@ -196,3 +196,23 @@ def test_measurements_do_not_depend_on_how_the_waiting_is_cut_up() -> None:
             np.testing.assert_array_equal(a.points, b.points)
         else:
             assert a == b
+
+
+def test_a_film_shows_the_robot_where_it_is_and_changes_nothing() -> None:
+    plain, filmed = ready(columns=90), ready(columns=90)
+    film = filmed.filming((320, 180))
+    pictures, measured = [film.frame()], []
+    for _ in range(20):
+        measured += drive(filmed, Twist2(0.3, 0.3), 0.1)
+        pictures.append(film.frame())
+    film.close()
+    expected = [each for _ in range(20) for each in drive(plain, Twist2(0.3, 0.3), 0.1)]
+    assert [repr(each) for each in measured if isinstance(each, Imu)] == [
+        repr(each) for each in expected if isinstance(each, Imu)
+    ]
+    assert {picture.shape for picture in pictures} == {(180, 320, 3)}
+    # the robot is grey and in the middle, and the brown floor goes by beneath it
+    for picture in pictures:
+        middle = picture[75:105, 145:175].astype(int)
+        assert ((middle.min(axis=-1) > 140) & (np.ptp(middle, axis=-1) < 16)).sum() > 40
+    assert (pictures[0][:100] != pictures[-1][:100]).mean() > 0.5

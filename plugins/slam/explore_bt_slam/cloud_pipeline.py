@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import RobotContext
-from explore_bt.levelling import AttitudeFilter, LevelCloud, fault_of_cloud, level, virtual_scan
-from explore_bt.types import BodyShape, Health, Imu, MapStructure, PointCloud, Pose2, Voxels
+from explore_bt.levelling import AttitudeFilter, LevelCloud, fault_of_cloud, level, level_frame, virtual_scan
+from explore_bt.types import BodyShape, Health, Imu, MapStructure, PointCloud, Pose2, RgbdFrame, Voxels
 from explore_bt_slam.front_end import Registered
 from explore_bt_slam.graph_distance import relative_covariances
 from explore_bt_slam.options import KissGtsamOptions
@@ -55,6 +55,10 @@ class CloudPipeline(Pipeline):
         if np.isfinite((imu.stamp_s, *imu.angular_velocity_rps, *imu.linear_acceleration_mps2)).all():
             imu = self._attitude.take_imu(imu)
         super().take_imu(imu)
+
+    def take_image(self, frame: RgbdFrame) -> None:
+        """An image, from a camera that leans with the body."""
+        super().take_image(level_frame(frame, self._attitude, self._base_m))
 
     def take_cloud(self, cloud: PointCloud) -> None:
         """One sweep, all the way to the map."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from explore_bt.clock import Clock
-from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, RobotContext
+from explore_bt.interfaces import API_VERSION, Driver, Filming, GroundTruth, PluginOptions, RobotContext
 from explore_bt.types import BodyFault, BodyShape, Measurement, MotionLimits, Pose2, Twist2
 from explore_bt_drivers.mujoco.figures import BODY_HEIGHT_M, FORESIGHT_S, STEP_M
 from explore_bt_drivers.mujoco.options import MujocoOptions
@@ -35,6 +35,7 @@ class Mujoco(Driver):
     name = "mujoco"
     api_version = API_VERSION
     Options: ClassVar[type[PluginOptions]] = MujocoOptions
+    films = True
 
     def __init__(self, options: PluginOptions) -> None:
         super().__init__(options)
@@ -145,6 +146,23 @@ class Mujoco(Driver):
     def truth(self) -> GroundTruth | None:
         """Pose, contacts, clearance, people, and the floor that can be explored."""
         return self._truth
+
+    def filming(self, size: tuple[int, int]) -> Filming:
+        """The robot in its world from above, and what its camera looks at in a corner.
+
+        Raises:
+            UserError: the library that draws is missing.
+        """
+        from explore_bt_drivers.mujoco.filming import WorldFilm
+
+        simulation = self._running()
+        return WorldFilm(
+            simulation.model,
+            simulation.surroundings,
+            size,
+            self._options.camera_mount,
+            lambda: (simulation.body.track, simulation.data.qpos),
+        )
 
     def _running(self) -> Simulation:
         if self._simulation is None:

@@ -63,7 +63,7 @@ class Simulation(ManualClock):
         begin_s = context.resumed.stamp_s if context.resumed else 0.0
         super().__init__(begin_s)
         step = math.floor(begin_s / STEP_S + ON_STEP)
-        self.data = mujoco.MjData(model)
+        self.model, self.data = model, mujoco.MjData(model)
         self.surroundings = Surroundings(scene, model, options.footprint_m)
         self.body = Body(model, self.data, options.limits, step)
         self.surroundings.settle(self.data, step, *self.body.pose.xy)

@@ -73,10 +73,18 @@ def fixed_matter(world: World, rng: np.random.Generator) -> Matter:
 
 
 def matter_of(solids: Sequence[Solid], rng: np.random.Generator) -> Matter:
-    """Walls and furniture, each in a colour of its own."""
+    """Walls and pieces of furniture, each in a colour of its own."""
     high = [solid for solid in solids if solid.name.startswith(("wall", "door"))]
-    low = [solid for solid in solids if solid not in high]
-    return _joined([_matter(high, partial(wall_tint, rng)), _matter(low, partial(furniture_tint, rng))])
+    pieces: dict[str, list[Solid]] = {}
+    for solid in solids:
+        if solid not in high:
+            pieces.setdefault(solid.name, []).append(solid)
+    furniture = [_matter(piece, partial(_same, furniture_tint(rng))) for piece in pieces.values()]
+    return _joined([_matter(high, partial(wall_tint, rng)), *furniture])
+
+
+def _same(tint: Tint) -> Tint:
+    return tint
 
 
 def _matter(solids: Sequence[Solid], tint: Callable[[], Tint]) -> Matter:
