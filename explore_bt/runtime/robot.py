@@ -127,7 +127,7 @@ class Robot:
         self._planner.setup(context)
         self._controller.setup(context)
         self._lookout = Lookout(self.driver.shape)
-        gate = SafetyGate(self.driver.footprint_radius_m, limits)
+        gate = SafetyGate(self.driver.footprint_radius_m, limits, self.driver.command_delay_s)
         self.pilot = Pilot(self._controller, gate, self.driver)
         self.scores = Scorekeeper(self.home, context.truth)
         parts: dict[str, Remembering] = {
