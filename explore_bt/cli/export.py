@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from explore_bt.cli.btlog import BtlogOption, require_btlog, write_btlogs
+from explore_bt.cli.filming import require_mp4
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.human import count, duration
 from explore_bt.cli.places import require_new_folder
@@ -73,10 +74,8 @@ def _require(csv: Path | None, parquet: Path | None, video: Path | None) -> None
     for folder, option in ((csv, "--csv"), (parquet, "--parquet")):
         if folder is not None:
             require_new_folder(folder, option)
-    if video is not None and video.suffix.lower() != ".mp4":
-        raise UserError(f"{video}: videos are MP4 files; write {video.with_suffix('.mp4')}")
-    if video is not None and video.exists():
-        raise UserError(f"{video} is there already; name another file")
+    if video is not None:
+        require_mp4(video)
 
 
 def _export_tables(recording: Recording, csv: Path | None, parquet: Path | None) -> None:

@@ -15,6 +15,7 @@ from explore_bt.cli.driving import (
     exit_code,
     show_result,
 )
+from explore_bt.cli.filming import VideoOption, film_of
 from explore_bt.cli.groot import GrootHostOption, GrootOption, GrootPortOption, groot_sinks
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.loading import MissionArgument, MockOption, SetOption, load_checked
@@ -37,6 +38,7 @@ def run(
     groot: GrootOption = False,
     groot_port: GrootPortOption = 1667,
     groot_host: GrootHostOption = "127.0.0.1",
+    video: VideoOption = None,
     mock: MockOption = None,
     verbose: VerboseOption = False,
 ) -> None:
@@ -46,19 +48,22 @@ def run(
     Ctrl-C stops the robot safely and saves the results; explore-bt resume goes on from there.
     """
     checked, registry = load_checked(mission, set_, mock)
+    attendants = film_of(checked, video)
     folder = new_run_folder(out, checked.path.stem)
     sinks = watched_sinks(registry, sink or (), headless=headless)
-    session = None
     if groot:
         from explore_bt.debug import DebugSession
 
         session = DebugSession()
+        attendants.append(session)
         sinks += groot_sinks(groot, checked, session, groot_host, groot_port)
     typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
-    from explore_bt.runtime import StopFlag
+    from explore_bt.runtime import Attendants, StopFlag
 
     stop = StopFlag()
     with run_log(folder / "run.log", verbose=verbose), stopping_by_signal(stop):
-        result = drive(checked, registry, folder, seed, sinks, stop, session)
+        result = drive(checked, registry, folder, seed, sinks, stop, Attendants(attendants))
     show_result(result, folder)
+    if video is not None and video.exists():
+        typer.echo(f"video      {video}")
     raise typer.Exit(exit_code(result.outcome))

@@ -3,6 +3,7 @@
 from explore_bt.interfaces.controller import Controller, ControlOutput, ControlStatus
 from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.exporter import Exporter, RobotProduct
+from explore_bt.interfaces.filming import Filming
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.interfaces.planner import Planner, never
 from explore_bt.interfaces.playback import Playback, Recorded
@@ -30,6 +31,7 @@ __all__ = [
     "Driver",
     "Event",
     "Exporter",
+    "Filming",
     "GroundTruth",
     "HeldBy",
     "MapMemory",

@@ -14,4 +14,5 @@ class HeldBy(enum.StrEnum):
     OBSTACLE = "an obstacle"
     SOMEONE = "someone who moves"
     SENSES = "senses that fail"
+    BODY = "a body that cannot drive"
     DEBUGGER = "the debugger"

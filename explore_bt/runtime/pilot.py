@@ -8,7 +8,7 @@ from dataclasses import replace
 from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, HeldBy, Surroundings
 from explore_bt.runtime.pose_predictor import PosePredictor
 from explore_bt.runtime.safety_gate import SafetyGate
-from explore_bt.types import Estimate, Health, MotionLimits, MotionState, Path, Scan2D, Twist2
+from explore_bt.types import BodyFault, Estimate, Health, MotionLimits, MotionState, Path, Scan2D, Twist2
 
 __all__ = ["Pilot"]
 
@@ -67,6 +67,15 @@ class Pilot:
         twist = self.motion.twist
         return abs(twist.linear_mps) < _REST and abs(twist.angular_rps) < _REST
 
+    @property
+    def body_fault(self) -> BodyFault | None:
+        """Why the body cannot drive now; None while it can."""
+        return self._driver.fault
+
+    def recover_body(self) -> bool:
+        """Have the body begin to get out of its fault; False where it cannot."""
+        return self._driver.recover()
+
     def follow(self, path: Path) -> None:
         """Drive along ``path`` from the next control step on."""
         self.path = path
@@ -91,12 +100,20 @@ class Pilot:
         """Whether the pose is elsewhere than the one shown last and the commands since then lead to."""
         if self._shown is None:
             return False
-        expected = self._predictor.predict(self._shown, estimate.stamp_s).T_map_base
+        expected = self._predictor.carry(self._shown, estimate.stamp_s).T_map_base
         off = expected.inverse().compose(estimate.T_map_base)
         return math.hypot(off.x, off.y) > JUMP_M or abs(off.yaw_rad) > JUMP_RAD
 
+    def twist_at(self, time_s: float) -> Twist2:
+        """What the body drove at a time of the last seconds, its lag behind its commands counted."""
+        return self._predictor.twist_at(time_s)
+
+    def carry(self, estimate: Estimate, time_s: float) -> Estimate:
+        """The estimate carried forward to a time of the last seconds, the body's lag counted."""
+        return self._predictor.carry(estimate, time_s)
+
     def predict(self, estimate: Estimate, now_s: float) -> Estimate:
-        """The estimate carried forward to now along the commands sent since its stamp."""
+        """Where all that was sent leads to, from the estimate."""
         return self._predictor.predict(estimate, now_s)
 
     def step(self, estimate: Estimate, scan: Scan2D | None, now_s: float, dt_s: float) -> None:
@@ -107,10 +124,11 @@ class Pilot:
             surroundings, self._unseen = self._unseen, None
             self._controller.see(surroundings)
         self._output = self._controller.step(now, scan, self._motion_within_limits(), dt_s)
-        fault = _unfit_to_drive(estimate, scan, now_s)
+        body = self.body_fault
+        fault = body.reason if body else _unfit_to_drive(estimate, scan, now_s)
         if fault:
             following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
-            self.held_by = HeldBy.SENSES
+            self.held_by = HeldBy.BODY if body else HeldBy.SENSES
         else:
             decision = self._gate.decide(self._output.twist, now.T_map_base, self.motion, dt_s, now_s)
             following, self.gate_reason = decision.motion, decision.reason

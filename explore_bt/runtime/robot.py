@@ -16,6 +16,7 @@ from explore_bt.interfaces import Event, MapMemory, MapView, RobotContext, Robot
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.fault_log import FaultLog
+from explore_bt.runtime.lookout import Lookout
 from explore_bt.runtime.people import People
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
@@ -30,6 +31,7 @@ from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
+from explore_bt.runtime.upright import Upright
 from explore_bt.runtime.way_finder import WayFinder
 from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
@@ -49,7 +51,6 @@ from explore_bt.types import (
 
 __all__ = ["Robot"]
 
-DEFAULT_LIDAR_RANGE_M = 5.0
 REASON_KEY = "reason"
 """Blackboard entry in which a tree may say why it ended."""
 OVER_BUDGET_KEY = "over_budget"
@@ -80,7 +81,8 @@ class Robot:
         self._probe: Probe | None = None
         self._counts = TickCounts(self.tree.nodes)
         self._sketch = Sketch()
-        self._scan: Scan2D | None = None
+        self._lookout = Lookout()
+        self._upright = Upright(self.driver, self.slam)
         self._scan_pose: Pose2 | None = None
         self._scan_twist = Twist2()
         self._measured: list[Measurement] = []
@@ -112,6 +114,7 @@ class Robot:
             start=self.driver.start,
             footprint_radius_m=self.driver.footprint_radius_m,
             limits=limits,
+            shape=self.driver.shape,
             truth=self.driver.truth(),
         )
         self.home = cut.memory.home if cut else self.driver.start
@@ -123,8 +126,9 @@ class Robot:
         self._poses_before = cut.memory.poses_before if cut else len(self.slam.trajectory().stamps_s)
         self._planner.setup(context)
         self._controller.setup(context)
+        self._lookout = Lookout(self.driver.shape)
         brake = self._mission.limits.of_brake(self.driver.limits)
-        gate = SafetyGate(self.driver.footprint_radius_m, brake)
+        gate = SafetyGate(self.driver.footprint_radius_m, brake, self.driver.command_delay_s)
         self.pilot = Pilot(self._controller, gate, self.driver, limits)
         self.scores = Scorekeeper(self.home, context.truth)
         parts: dict[str, Remembering] = {
@@ -135,8 +139,6 @@ class Robot:
         self._keeping = RobotKeeping(self.tree, self.blackboard, parts)
         if cut is not None:
             self._restore(cut)
-
-    # --- what leaves may ask for -------------------------------------------------------------------
 
     @property
     def footprint_radius_m(self) -> float:
@@ -151,7 +153,7 @@ class Robot:
     @property
     def lidar_range_m(self) -> float:
         """How far the lidar sees."""
-        return self._scan.range_max_m if self._scan else DEFAULT_LIDAR_RANGE_M
+        return self._lookout.range_m
 
     @property
     def stop_requested(self) -> bool:
@@ -192,7 +194,7 @@ class Robot:
 
     def scan(self) -> Scan2D | None:
         """The newest scan, None before the first."""
-        return self._scan
+        return self._lookout.scan
 
     def plan(self, goal: Pose2, via: Sequence[tuple[float, float]] = ()) -> Path:
         """A path from where the robot is now, over the places of ``via`` that can be come to.
@@ -236,25 +238,23 @@ class Robot:
         """Open such places again, unless that was done ``chances`` times before; how many."""
         return self._tight.reopen(chances)
 
-    # --- what the runner calls, in this order, every control period -----------------------------------
-
     def sense(self) -> None:
         """Take in what the driver measured since the last time."""
-        measurements = self._read()
-        for measurement in measurements:
+        before = self.scan()
+        for measurement in self._read():
             self._take(measurement)
-        if any(isinstance(measurement, Scan2D) for measurement in measurements):
-            self._show_gate()
+        if (scan := self.scan()) is not None and scan is not before:
+            self._show_gate(scan)
         self._news.of_health(self.estimate(), self._clock_s())
 
     def act(self, now_s: float, dt_s: float) -> None:
         """One control period; a controller that breaks down is braked for."""
         try:
-            self.pilot.step(self.estimate(), self._scan, now_s, dt_s)
+            self.pilot.step(self.estimate(), self.scan(), now_s, dt_s)
         except Exception as error:  # any plugin's failure ends in a controlled stop, never in a crash
             self._faults.note(f"controller {self._controller.name}", error)
             self.pilot.brake(f"controller {self._controller.name} failed: {error!r}", now_s, dt_s)
-        if self._scan is not None:  # before the first one there is nothing to drive by, nor to drive to
+        if self.scan() is not None:  # before the first one there is nothing to drive by, nor to drive to
             self._news.of_gate(self.pilot, self._clock_s())
         self._keep_score(now_s, dt_s)
 
@@ -306,7 +306,8 @@ class Robot:
         self._keeping.restore(cut.memory)
         for measurement in cut.measured:
             self._take(measurement)
-        self._measured, self._scan, self._scan_pose = [], None, None
+        self._measured, self._scan_pose = [], None
+        self._lookout.forget()
         self.slam.pick_up()
         if cut.score is not None:
             self.scores.catch_up(cut.score, cut.true_way)
@@ -320,7 +321,7 @@ class Robot:
             robot=self.name,
             estimate=self.estimate(),
             grid=self.slam.grid(),
-            scan=self._scan,
+            scan=self.scan(),
             scan_pose=self._scan_pose,
             scan_twist=self._scan_twist,
             path=self.pilot.path,
@@ -353,12 +354,11 @@ class Robot:
         self.scores.control_step(pose, self.pilot.motion, now_s, dt_s)
 
     def _take(self, measurement: Measurement) -> None:
-        if isinstance(measurement, Scan2D):
-            self._scan = measurement
-        elif isinstance(measurement, Battery):
+        self._lookout.hear(measurement, self.pilot.twist_at)
+        if isinstance(measurement, Battery):
             self._purse.take(measurement)
             return
-        if self._slam_fault:
+        if self._slam_fault or not self._upright.passes():
             return
         self._measured.append(measurement)
         self._keeping.hear(measurement)
@@ -368,30 +368,29 @@ class Robot:
             self._slam_fault = f"slam {self.slam.name} failed: {error!r}"
             self._faults.note(f"slam {self.slam.name}", error)
 
-    def _show_gate(self) -> None:
-        assert self._scan is not None
-        estimate = self._estimate_of_scan(self._scan)
-        self._scan_pose, self._scan_twist = estimate.T_map_base, self.pilot.motion.twist
+    def _show_gate(self, scan: Scan2D) -> None:
+        estimate = self._estimate_of_scan(scan)
+        twist = self.pilot.twist_at(scan.stamp_s + float(scan.times_s.mean()))
+        self._scan_pose, self._scan_twist = estimate.T_map_base, twist
         if self.pilot.has_jumped(estimate):
             self._people.forget()
-        around = self._people.around(
-            self._scan, estimate.T_map_base, self.pilot.motion.twist, self._seen_points(), self.slam.grid()
-        )
+        points, grid = self._seen_points(), self.slam.grid()
+        around = self._people.around(scan, estimate.T_map_base, twist, points, grid)
         self.moving = around.moving
         self.pilot.see(around, estimate)
 
     def _seen_points(self) -> NDArray[np.float64]:
         """(N, 2) metres, ``map`` frame: the newest scan's returns, less noisy close by."""
-        if self._scan is None:
+        if (scan := self.scan()) is None:
             return np.empty((0, 2))
-        pose = self._estimate_of_scan(self._scan).T_map_base
-        return np.ascontiguousarray(pose.apply(steadied(self._scan).points()))
+        pose = self._estimate_of_scan(scan).T_map_base
+        return np.ascontiguousarray(pose.apply(steadied(scan).points()))
 
     def _estimate_of_scan(self, scan: Scan2D) -> Estimate:
         """The newest, carried forward to the scan where SLAM lags behind."""
         estimate = self.slam.estimate()
         is_late = estimate.stamp_s < scan.stamp_s
-        return self.pilot.predict(estimate, scan.stamp_s) if is_late else estimate
+        return self.pilot.carry(estimate, scan.stamp_s) if is_late else estimate
 
     def _read(self) -> Sequence[Measurement]:
         try:

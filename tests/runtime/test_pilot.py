@@ -10,7 +10,16 @@ from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driv
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.testing.fake_robot import full_circle_scan, open_floor
-from explore_bt.types import Estimate, MotionLimits, MotionState, Path, Pose2, Twist2
+from explore_bt.types import (
+    BodyFault,
+    BodyFaultKind,
+    Estimate,
+    MotionLimits,
+    MotionState,
+    Path,
+    Pose2,
+    Twist2,
+)
 
 from .conftest import DT, LIMITS, towards
 
@@ -44,6 +53,7 @@ class Off(StraightOn):
 
 class Wheels:
     command_delay_s = 0.0
+    fault: BodyFault | None = None
 
     def command(self, twist: Twist2) -> None:
         """Nothing hangs on it."""
@@ -126,6 +136,15 @@ def test_a_pause_does_not_count_as_being_blocked(pilot: Pilot) -> None:
         pilot.pause("held", 1.6 + DT * i, DT)
     assert pilot.blocked_s == pytest.approx(before_s)
     assert before_s > 0.0
+
+
+def test_a_body_that_cannot_drive_is_held_and_named(pilot: Pilot) -> None:
+    wheels = cast(Wheels, pilot._driver)
+    wheels.fault = BodyFault(BodyFaultKind.FALLEN, "the robot has fallen")
+    pilot.step(Estimate(0.0, Pose2(0.0, 0.0, 0.0)), full_circle_scan(), 0.0, DT)
+    assert pilot.held_by is HeldBy.BODY
+    assert pilot.gate_reason == "the robot has fallen"
+    assert pilot.motion.twist == Twist2()
 
 
 @given(st.integers(5, 60), st.integers(1, 12))

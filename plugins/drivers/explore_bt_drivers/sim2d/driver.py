@@ -6,21 +6,17 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from explore_bt.clock import Clock
-from explore_bt.errors import WorldError
-from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, Resumption, RobotContext
+from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, RobotContext
 from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt_drivers.people import Town
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.sim2d.simulation import Simulation
-from explore_bt_drivers.sim2d.start import choose_start
-from explore_bt_drivers.sim2d.town import Town
 from explore_bt_drivers.sim2d.truth import Sim2dTruth
-from explore_bt_drivers.world import World, load_world, observable_floor
+from explore_bt_drivers.world import choose_start, load_world, observable_floor, stand_of
 
 __all__ = ["Sim2d"]
 
 _WARM_UP_S = 0.2
-_MENDED_M = 0.02
-"""So much nearer to a thing may a pose that went through a recording be."""
 
 
 class Sim2d(Driver):
@@ -52,16 +48,21 @@ class Sim2d(Driver):
         options = self._options
         world = load_world(options.world)
         self._start = choose_start(world, context.start, options.radius)
-        stand = _stand(world, context.resumed, options.radius) or self._start
-        town = Town(world, options, self._start)
+        stand = stand_of(world, context.resumed, options.radius) or self._start
+        town = Town(
+            world,
+            self._start.xy,
+            options.walkers,
+            walker_radius_m=options.walker_radius,
+            walker_speed_mps=options.walker_speed,
+        )
         rehearsal = Simulation(world, options, stand, context, town.crowd(context.rng("walkers")))
         rehearsal.body.command(Twist2(0.1, 0.1))
         rehearsal.wait_until(rehearsal.now_s() + _WARM_UP_S)
         observable_floor(world, self._start.xy, options.radius, 0.0)
         crowd = town.crowd(context.rng("walkers"))
         self._simulation = Simulation(world, options, stand, context, crowd)
-        body = self._simulation.body
-        self._truth = Sim2dTruth(world, self._start, body, crowd, options.radius, options.lidar_range)
+        self._truth = Sim2dTruth(world, self._start, self._simulation, options.radius, options.lidar_range)
 
     @property
     def clock(self) -> Clock:
@@ -117,21 +118,3 @@ class Sim2d(Driver):
         if self._simulation is None:
             raise RuntimeError("sim2d is used before setup()")
         return self._simulation
-
-
-def _stand(world: World, resumed: Resumption | None, radius_m: float) -> Pose2 | None:
-    """Where a resumed run left the robot; None for one that begins.
-
-    Raises:
-        WorldError: something stands there now.
-    """
-    if resumed is None:
-        return None
-    stand = resumed.true_pose or resumed.pose
-    clearance_m, thing = world.nearest_thing(stand.x, stand.y)
-    if clearance_m < radius_m - _MENDED_M and not world.things:  # things stand elsewhere by then
-        raise WorldError(
-            f"{world.source}: the run broke off at ({stand.x:.2f}, {stand.y:.2f}), {clearance_m:.2f} m from "
-            f"{thing} as it stands now; the robot's radius is {radius_m:g} m. Give the world as it was"
-        )
-    return stand

@@ -8,12 +8,13 @@ import numpy as np
 from numba import njit
 
 from explore_bt.types import Scan2D
+from explore_bt_drivers.people import Crowd
+from explore_bt_drivers.people.ways import disc_ahead
 from explore_bt_drivers.sim2d.body import Track
-from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.motion import YAW, X, Y, place_at, value_at
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.world import World
-from explore_bt_drivers.world.index import cast_ray
+from explore_bt_drivers.world.index import MIRROR, MOST_MIRRORS, first_hit, reflected
 
 __all__ = ["Lidar"]
 
@@ -65,13 +66,22 @@ class Lidar:
         ranges = np.empty(len(self._angles), dtype=np.float64)
         reach = self._range_m + _TAIL * self._noise_m
         index, states = self.world.index, track.states
-        _cast_sweep(index, states, track.first_step, stamp_s, self._times, self._angles, reach, ranges)
-        shown = self._crowd.cast(track, stamp_s, self._times, self._angles, reach, ranges)
+        shown = _cast_sweep(
+            index,
+            self._crowd.ways,
+            states,
+            track.first_step,
+            stamp_s,
+            self._times,
+            self._angles,
+            reach,
+            ranges,
+        )
         if self._noise_m > 0.0:
             ranges += self._rng.normal(0.0, self._noise_m, len(ranges))
         ranges[ranges > self._range_m] = math.inf
-        if shown is not None:  # people come nearer than walls do, even into the lidar
-            ranges[shown & (ranges < _RANGE_MIN_M)] = math.nan
+        # people come nearer than walls do, even into the lidar
+        ranges[shown & (ranges < _RANGE_MIN_M)] = math.nan
         if self._dropout > 0.0:
             ranges[self._dropout_rng.random(len(ranges)) < self._dropout] = math.nan
         measured = ranges.astype(np.float32)
@@ -80,10 +90,34 @@ class Lidar:
 
 
 @njit(cache=True)
-def _cast_sweep(index, states, first_step, stamp, times, angles, limit, out):  # type: ignore[no-untyped-def]  # kernel
-    """Exact ranges of a sweep, each beam cast from the pose at its own time."""
+def _cast_sweep(index, ways, states, first_step, stamp, times, angles, limit, out):  # type: ignore[no-untyped-def]  # kernel
+    """Exact ranges of a sweep; robot and people are where they are at each beam's own time.
+
+    Returns:
+        (N,) bool: the beams that end at a person.
+    """
+    shown = np.zeros(angles.shape[0], dtype=np.bool_)
     for i in range(angles.shape[0]):
         row, share = place_at(stamp + times[i], first_step, states.shape[0])
         x, y = value_at(states, row, share, X), value_at(states, row, share, Y)
         direction = value_at(states, row, share, YAW) + angles[i]
-        out[i] = cast_ray(index, x, y, math.cos(direction), math.sin(direction), limit)
+        dx, dy = math.cos(direction), math.sin(direction)
+        out[i], shown[i] = _beam(index, ways, stamp + times[i], x, y, dx, dy, limit)
+    return shown
+
+
+@njit(cache=True)
+def _beam(index, ways, time, x, y, dx, dy, limit):  # type: ignore[no-untyped-def]  # kernel
+    """Length of a beam by way of mirrors, and whether it ends at a person."""
+    driven, last = 0.0, -1
+    for _ in range(MOST_MIRRORS):
+        wall, last = first_hit(index, x, y, dx, dy, limit - driven, last)
+        person = disc_ahead(ways, time, x, y, dx, dy, limit - driven)
+        if person < wall:
+            return driven + person, True
+        driven += wall
+        if last < 0 or index.materials[last] != MIRROR:
+            return driven, False
+        x, y = x + wall * dx, y + wall * dy
+        dx, dy = reflected(index.segments, last, dx, dy)
+    return math.inf, False

@@ -7,16 +7,16 @@ import math
 from explore_bt.clock import ManualClock
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Measurement, Pose2
-from explore_bt_drivers.sim2d.battery import BatteryGauge
+from explore_bt_drivers.battery import BatteryGauge
+from explore_bt_drivers.people import Crowd
 from explore_bt_drivers.sim2d.body import Body
-from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.imu import InertialUnit
 from explore_bt_drivers.sim2d.lidar import Lidar
 from explore_bt_drivers.sim2d.motion import ON_STEP, STEP_S, X, Y
 from explore_bt_drivers.sim2d.odometry import Wheels
 from explore_bt_drivers.sim2d.options import Sim2dOptions
-from explore_bt_drivers.sim2d.scenery import Scenery
-from explore_bt_drivers.world import World
+from explore_bt_drivers.sim2d.touches import Touches
+from explore_bt_drivers.world import Scenery, World
 
 __all__ = ["Simulation"]
 
@@ -39,7 +39,8 @@ class Simulation(ManualClock):
         step = math.floor(begin_s / STEP_S + ON_STEP)
         self.body = Body(world, start, options.radius, options.limits, step)
         self.crowd = crowd
-        self._scenery = Scenery(world, options.radius)
+        self.touches = Touches(crowd, options.radius)
+        self._scenery = Scenery(world, options.radius, STEP_S)
         self._lidar = Lidar(world, options, context.rng("lidar"), context.rng("lidar dropout"), crowd)
         self._sensors = (
             InertialUnit(options, context.rng("imu")),
@@ -68,9 +69,9 @@ class Simulation(ManualClock):
         world = self._scenery.settle(step, float(track.now[X]), float(track.now[Y]))
         self.body.world = self._lidar.world = world
         until = min(last_step, step + _CHUNK_STEPS, self._scenery.next_step(step))
-        self.crowd.foresee(until)
+        self.crowd.foresee(until * STEP_S)
         self.body.advance(until)
-        self.crowd.meet(track, step)
+        self.touches.follow(track, step)
 
     def drain(self) -> list[Measurement]:
         """Everything measured since the last call, in time order."""

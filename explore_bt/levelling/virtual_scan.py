@@ -1,0 +1,59 @@
+"""A planar scan made from a level 3D sweep, for the registration that planar lidars use."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from explore_bt.levelling.arrays import Floats, Singles
+from explore_bt.levelling.level_cloud import LevelCloud
+from explore_bt.types import Scan2D
+
+__all__ = ["virtual_scan"]
+
+_BINS = 720
+
+
+def virtual_scan(
+    cloud: LevelCloud, low_m: float, high_m: float, range_max_m: float, rise: float = 0.0
+) -> Scan2D:
+    """In each of 720 directions the nearest return between two heights above the floor.
+
+    A direction in which only other heights returned something says "nothing within range"; one without any
+    return is invalid. Beams keep the direction and time of their return, so that they are deskewed like any
+    other scan's; they start in ``base_link``.
+
+    Args:
+        cloud: the sweep.
+        low_m: the lower height.
+        high_m: the higher one.
+        range_max_m: of the lidar.
+        rise: by so much for every metre away the lower height is higher, metres.
+    """
+    angles, ranges, times = _nearest(cloud.own, cloud.times_s, low_m, high_m, rise, _BINS)
+    return Scan2D(cloud.stamp_s, angles, ranges, times, 0.0, range_max_m, "base_link")
+
+
+@njit(cache=True)
+def _nearest(
+    points: Singles, stamps: Floats, low: float, high: float, rise: float, bins: int
+) -> tuple[Floats, Singles, Floats]:
+    width = 2.0 * np.pi / bins
+    angles = np.linspace(-np.pi, np.pi - width, bins) + 0.5 * width
+    ranges = np.full(bins, np.float32(np.nan), np.float32)
+    times = np.zeros(bins)
+    for i in range(points.shape[0]):
+        x, y, z = np.float64(points[i, 0]), np.float64(points[i, 1]), np.float64(points[i, 2])
+        angle = np.arctan2(y, x)
+        k = min(int((angle + np.pi) / width), bins - 1)
+        away = np.hypot(x, y)
+        if low + rise * away <= z <= high:
+            distance = np.float32(away)
+            if not ranges[k] <= distance:  # NaN and inf too
+                ranges[k] = distance
+                angles[k] = angle
+                times[k] = stamps[i]
+        elif np.isnan(ranges[k]):
+            ranges[k] = np.inf
+            times[k] = stamps[i]
+    return angles, ranges, times
