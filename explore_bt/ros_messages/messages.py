@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.ros_messages.cloud import point_cloud
+from explore_bt.ros_messages.mountings import Mountings, planar, rotation_of
 from explore_bt.types import Imu, Measurement, Pose2, Scan2D, WheelOdometry
-from explore_bt_drivers.replay.bag_cloud import point_cloud
-from explore_bt_drivers.replay.mountings import Mountings, planar, rotation_of
 
 __all__ = ["MESSAGES", "TRANSFORMS", "stamp_of"]
 
