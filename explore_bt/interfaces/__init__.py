@@ -1,12 +1,15 @@
 """The contracts: one abstract class per plugin kind, and the values only they exchange."""
 
+from explore_bt.interfaces.bridge import Bridge
 from explore_bt.interfaces.controller import Controller, ControlOutput, ControlStatus
 from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.exporter import Exporter, RobotProduct
+from explore_bt.interfaces.finding import Finding
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.interfaces.planner import Planner, never
 from explore_bt.interfaces.playback import Playback, Recorded
 from explore_bt.interfaces.plugin import API_VERSION, Plugin, PluginOptions, Resumption, RobotContext
+from explore_bt.interfaces.request import Request
 from explore_bt.interfaces.services import MapMemory, MapView, Pilot, RobotServices
 from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.slam import Slam
@@ -24,12 +27,14 @@ from explore_bt.interfaces.truth import GroundTruth
 
 __all__ = [
     "API_VERSION",
+    "Bridge",
     "ControlOutput",
     "ControlStatus",
     "Controller",
     "Driver",
     "Event",
     "Exporter",
+    "Finding",
     "GroundTruth",
     "HeldBy",
     "MapMemory",
@@ -43,6 +48,7 @@ __all__ = [
     "PluginOptions",
     "PortInfo",
     "Recorded",
+    "Request",
     "Resumption",
     "RobotContext",
     "RobotProduct",

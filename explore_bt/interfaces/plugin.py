@@ -74,6 +74,7 @@ class RobotContext:
         limits: the driver's limits, capped by the mission's.
         truth: the simulator's truth, None on hardware.
         resumed: where the run goes on, None for one that begins. ``start`` is still where the mission began.
+        connection: what the driver shares with plugins of its own family, None where it shares nothing.
     """
 
     robot: str = "robot"
@@ -83,6 +84,7 @@ class RobotContext:
     limits: MotionLimits = MotionLimits()
     truth: GroundTruth | None = None
     resumed: Resumption | None = None
+    connection: object = None
 
     def rng(self, stream: str) -> np.random.Generator:
         """An independent generator for one named use; the same seed, robot and name give the same."""

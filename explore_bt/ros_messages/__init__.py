@@ -6,7 +6,7 @@ A message is any object with the fields of its definition; what does not fit rai
 from explore_bt.ros_messages.camera import CAMERA_INFO, IMAGE, CameraStream, CameraTopics, choose_camera
 from explore_bt.ros_messages.image_pairs import ImagePairs
 from explore_bt.ros_messages.messages import MESSAGES, TRANSFORMS, stamp_of
-from explore_bt.ros_messages.mountings import Mountings, link_of, planar, rotation_of
+from explore_bt.ros_messages.mountings import Mountings, Places, link_of, planar, rotation_of
 
 __all__ = [
     "CAMERA_INFO",
@@ -17,6 +17,7 @@ __all__ = [
     "CameraTopics",
     "ImagePairs",
     "Mountings",
+    "Places",
     "choose_camera",
     "link_of",
     "planar",

@@ -9,7 +9,7 @@ from typing import Any
 from explore_bt.ros_messages.image import COLOURS, DEPTHS, Lens, colour, depth_m
 from explore_bt.ros_messages.image_pairs import ImagePairs
 from explore_bt.ros_messages.messages import stamp_of
-from explore_bt.ros_messages.mountings import Mountings
+from explore_bt.ros_messages.mountings import Places
 from explore_bt.types import RgbdFrame
 
 __all__ = ["CAMERA_INFO", "IMAGE", "CameraStream", "CameraTopics", "choose_camera"]
@@ -79,7 +79,7 @@ class CameraStream:
             an optical frame looks along z and is nowhere near ``base_link``.
     """
 
-    def __init__(self, topics: CameraTopics, mountings: Mountings, notes: list[str]) -> None:
+    def __init__(self, topics: CameraTopics, mountings: Places, notes: list[str]) -> None:
         self._topics = topics
         self._pairs: ImagePairs[Any] = ImagePairs()
         self._lens: Lens | None = None

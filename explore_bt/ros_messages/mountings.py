@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Mountings", "link_of", "planar", "rotation_of"]
+__all__ = ["Mountings", "Places", "link_of", "planar", "rotation_of"]
 
 _FARTHEST_M = 1e6
 _STILL = 1e-3
 _BASES = ("base_link", "base_footprint", "base")
+
+
+class Places(Protocol):
+    """Who knows where sensors sit on the robot."""
+
+    def of(self, frame: str) -> NDArray[np.float64]:
+        """(4, 4) float64 ``T_base_sensor``."""
+
+    def known(self, frame: str) -> NDArray[np.float64] | None:
+        """The same; None where nothing ties the frame to the robot."""
 
 
 class Mountings:

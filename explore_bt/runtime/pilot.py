@@ -96,7 +96,7 @@ class Pilot:
             surroundings, self._unseen = self._unseen, None
             self._controller.see(surroundings)
         self._output = self._controller.step(now, scan, self.motion, dt_s)
-        fault = _unfit_to_drive(estimate, scan, now_s)
+        fault = self._driver.fault() or _unfit_to_drive(estimate, scan, now_s)
         if fault:
             following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
             self.held_by = HeldBy.SENSES

@@ -113,6 +113,7 @@ class Robot:
             footprint_radius_m=self.driver.footprint_radius_m,
             limits=limits,
             truth=self.driver.truth(),
+            connection=self.driver.connection,
         )
         self.home = cut.memory.home if cut else self.driver.start
         warm_up()
@@ -389,8 +390,7 @@ class Robot:
     def _estimate_of_scan(self, scan: Scan2D) -> Estimate:
         """The newest, carried forward to the scan where SLAM lags behind."""
         estimate = self.slam.estimate()
-        is_late = estimate.stamp_s < scan.stamp_s
-        return self.pilot.predict(estimate, scan.stamp_s) if is_late else estimate
+        return self.pilot.predict(estimate, scan.stamp_s) if estimate.stamp_s < scan.stamp_s else estimate
 
     def _read(self) -> Sequence[Measurement]:
         try:

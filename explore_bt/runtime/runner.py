@@ -9,6 +9,7 @@ from explore_bt.interfaces import Event, TickSnapshot
 from explore_bt.mission import Mission
 from explore_bt.runtime.attendant import Attendant
 from explore_bt.runtime.observers import Observers
+from explore_bt.runtime.requests import Requests
 from explore_bt.runtime.resumption import CutRun
 from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
@@ -39,6 +40,7 @@ class Runner:
         mission: as loaded and checked.
         robots: set up.
         observers: who is shown every tick.
+        requests: what people ask for through the robots.
         stop: raised by anyone who wants an end.
         attendant: stands beside the tick loop.
         resumed: where the run goes on, None for one that begins.
@@ -54,6 +56,7 @@ class Runner:
         mission: Mission,
         robots: Sequence[Robot],
         observers: Observers,
+        requests: Requests,
         stop: StopFlag,
         attendant: Attendant,
         *,
@@ -63,6 +66,7 @@ class Runner:
         self._mission = mission
         self.robots = robots
         self._observers = observers
+        self._requests = requests
         self.stop = stop
         self._attendant = attendant
         self._dt_s = 1.0 / mission.control_rate_hz
@@ -90,10 +94,12 @@ class Runner:
     def run(self) -> None:
         """Until everything stands still; ``outcome`` and ``reason`` then tell why."""
         self._attendant.begin(self)
+        self._begin_s = max(self._begin_s, *(robot.driver.clock.now_s() for robot in self.robots))
         while self._phase is not _Phase.OVER:
             self._advance()
             is_tick = self._is_tick
             if is_tick:
+                self._requests.heed(self.hold)
                 self._attendant.on_period()
                 self._decide()
             for robot in self.robots:
@@ -129,13 +135,21 @@ class Runner:
         return self._step % self._steps_per_tick == 0
 
     def _advance(self) -> None:
-        """Go on to the next control period."""
-        self._step += 1
+        """Go on to the next control period, in real time to the one that is due: none is made up for."""
+        missed = self._ticks_missed
+        self.tick += missed
+        self._step += 1 + missed * self._steps_per_tick
         self.now_s = self._step * self._dt_s
         for robot in self.robots:
             robot.driver.clock.wait_until(self.now_s)
         for robot in self.robots:
             robot.sense()
+
+    @property
+    def _ticks_missed(self) -> int:
+        """Whole ticks that have gone by since this period began; commands for the past help nobody."""
+        late_s = max(robot.driver.clock.now_s() for robot in self.robots) - self.now_s
+        return 0 if self.is_simulated else max(int(late_s / self._dt_s) // self._steps_per_tick, 0)
 
     def _decide(self) -> None:
         if self._phase is _Phase.WAKING:
@@ -155,7 +169,8 @@ class Runner:
             robot = blind[0]
             found = "no scan" if robot.scan() is None else "only scans without a valid beam"
             complaint = f"driver {robot.driver.name} gave {found} in {FIRST_SCAN_TIMEOUT_S:.0f} s"
-            self._end(Outcome.FAILED, f"robot {robot.name}: {complaint}; check the lidar")
+            hint = robot.driver.fault() or "check the lidar"
+            self._end(Outcome.FAILED, f"robot {robot.name}: {complaint}; {hint}")
 
     def _tick_trees(self) -> None:
         self._attendant.before_tick()

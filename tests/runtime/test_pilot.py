@@ -38,6 +38,9 @@ class Wheels:
     def command(self, twist: Twist2) -> None:
         """Nothing hangs on it."""
 
+    def fault(self) -> str:
+        return ""
+
 
 @pytest.fixture
 def pilot() -> Pilot:
