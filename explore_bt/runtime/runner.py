@@ -21,6 +21,8 @@ __all__ = ["Runner"]
 
 FIRST_SCAN_TIMEOUT_S = 5.0
 REST_TIMEOUT_S = 5.0
+LONGEST_PERIOD_S = 0.25
+"""After so long without a command a driver in real time has halted its robot."""
 _LEVELS = {Outcome.FAILED: "error", Outcome.BUDGET: "warning"}
 
 
@@ -75,6 +77,7 @@ class Runner:
         self._after_tick = after_tick
         self.ended: dict[str, Status] = {}
         self._rest_until_s = 0.0
+        self._acted_s: dict[str, float] = {}
         self._held_s = 0.0
         self.tick = 0
         if resumed is not None:
@@ -103,7 +106,7 @@ class Runner:
                 self._attendant.on_period()
                 self._decide()
             for robot in self.robots:
-                robot.act(self.now_s, self._dt_s)
+                robot.act(*self._period_of(robot))
             if is_tick:
                 self._show()
                 self._after_tick(self)
@@ -115,7 +118,7 @@ class Runner:
         observers. The robots brake to rest and stand, and will go on where they were.
         """
         for robot in self.robots:
-            robot.hold(reason, self.now_s, self._dt_s)
+            robot.hold(reason, *self._period_of(robot))
         self._advance()
         self._held_s += self._dt_s
         if self._is_tick:
@@ -144,6 +147,18 @@ class Runner:
             robot.driver.clock.wait_until(self.now_s)
         for robot in self.robots:
             robot.sense()
+
+    def _period_of(self, robot: Robot) -> tuple[float, float]:
+        """The time at which a robot is commanded, and how long ago that was done last.
+
+        In simulated time both are nominal; in real time a late loop has let the last command drive on.
+        """
+        if self.is_simulated:
+            return self.now_s, self._dt_s
+        now_s = max(robot.driver.clock.now_s(), self.now_s)
+        since_s = now_s - self._acted_s.get(robot.name, self.now_s)
+        self._acted_s[robot.name] = now_s
+        return now_s, min(max(since_s, self._dt_s), LONGEST_PERIOD_S)
 
     @property
     def _ticks_missed(self) -> int:

@@ -8,7 +8,7 @@ from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driv
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.testing.fake_robot import full_circle_scan, open_floor
-from explore_bt.types import Estimate, MotionLimits, Path, Pose2, Twist2
+from explore_bt.types import Estimate, MotionLimits, MotionState, Path, Pose2, Twist2
 
 FLOOR = open_floor()
 DT = 0.05
@@ -114,3 +114,21 @@ def test_a_pause_does_not_count_as_being_blocked(pilot: Pilot) -> None:
         pilot.pause("held", 1.6 + DT * i, DT)
     assert pilot.blocked_s == pytest.approx(before_s)
     assert before_s > 0.0
+
+
+def test_a_command_that_may_stay_in_force_for_longer_is_checked_for_as_long(pilot: Pilot) -> None:
+    wall = np.array([[0.6, 0.01 * n] for n in range(-60, 61)])
+    limits = MotionLimits()
+
+    def distance_at_hold(in_force_s: float) -> float:
+        """How far ahead of a wall at x = 0.6 m a gate lets a robot of 0.25 m drive at 0.2 m/s."""
+        gate = SafetyGate(0.25, limits)
+        motion = MotionState(Twist2(0.2, 0.0))
+        for x in np.arange(0.0, 0.3, 0.005):
+            gate.see(Surroundings(0.0, wall - [x, 0.0], FLOOR), Pose2(0.0, 0.0, 0.0))
+            if gate.decide(Twist2(0.2, 0.0), Pose2(0.0, 0.0, 0.0), motion, 0.05, 0.0, in_force_s).reason:
+                return float(0.6 - x)
+        raise AssertionError("never held")
+
+    longer_m = distance_at_hold(0.25) - distance_at_hold(0.05)
+    assert 0.2 * 0.2 - 0.006 <= longer_m <= 0.2 * 0.2 + 0.006
