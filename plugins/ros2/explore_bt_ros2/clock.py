@@ -26,6 +26,10 @@ class RosClock(Clock):
         """Mission time of a stamp."""
 
     @abstractmethod
+    def stamp_s(self, mission_s: float) -> float:
+        """The ROS time of a moment of the mission."""
+
+    @abstractmethod
     def ros_s(self) -> float:
         """The ROS time now, seconds."""
 
@@ -58,6 +62,10 @@ class SystemTimeClock(RosClock):
     def mission_s(self, ros_s: float) -> float:
         """Mission time of a stamp."""
         return ros_s - self._origin_s
+
+    def stamp_s(self, mission_s: float) -> float:
+        """The ROS time of a moment of the mission."""
+        return mission_s + self._origin_s
 
     def ros_s(self) -> float:
         """The system's time."""
@@ -113,6 +121,10 @@ class SimTimeClock(RosClock):
     def mission_s(self, ros_s: float) -> float:
         """Mission time of a stamp."""
         return ros_s - self._origin_s
+
+    def stamp_s(self, mission_s: float) -> float:
+        """The ROS time of a moment of the mission."""
+        return mission_s + self._origin_s
 
     def ros_s(self) -> float:
         """What ``/clock`` said last."""

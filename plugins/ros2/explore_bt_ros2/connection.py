@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import threading
+from dataclasses import dataclass, field
 
 from explore_bt_ros2.clock import RosClock
 from explore_bt_ros2.link import Link
@@ -14,9 +15,14 @@ __all__ = ["Connection"]
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """One node, one clock, one tf buffer for driver, SLAM, controller and outputs of a robot."""
+    """One node, one clock, one tf buffer for driver, SLAM, controller and outputs of a robot.
+
+    Attributes:
+        has_neighbour_map: set where somebody else's SLAM makes the map: then ours publishes none.
+    """
 
     link: Link
     clock: RosClock
     buffer: TransformBuffer
     options: Ros2Options
+    has_neighbour_map: threading.Event = field(default_factory=threading.Event)

@@ -9,14 +9,16 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock as ClockMessage
 
 from explore_bt.errors import PluginError
-from explore_bt.interfaces import API_VERSION, Driver, Finding, PluginOptions, RobotContext
+from explore_bt.interfaces import API_VERSION, Driver, Finding, PluginOptions, Request, RobotContext, Sink
 from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
 from explore_bt_ros2.clock import RosClock, SimTimeClock, SystemTimeClock
 from explore_bt_ros2.commander import Commander
 from explore_bt_ros2.connection import Connection
 from explore_bt_ros2.link import Link
 from explore_bt_ros2.options import Ros2Options
+from explore_bt_ros2.outputs import Ros2Outputs
 from explore_bt_ros2.senses import Senses
+from explore_bt_ros2.services import Services
 from explore_bt_ros2.stamps import seconds_of
 from explore_bt_ros2.survey import survey
 from explore_bt_ros2.transforms import TransformBuffer
@@ -46,6 +48,8 @@ class Ros2(Driver):
         self._connection: Connection | None = None
         self._senses: Senses | None = None
         self._commander: Commander | None = None
+        self._services: Services | None = None
+        self._outputs: tuple[Ros2Outputs, ...] = ()
         self._start = Pose2.identity()
 
     def setup(self, context: RobotContext) -> None:
@@ -74,6 +78,9 @@ class Ros2(Driver):
         self._senses = Senses(link, options, clock, self._connection.buffer)
         self._commander = Commander(link, options, clock)
         self._start = context.start or Pose2.identity()
+        if options.outputs:
+            self._services = Services(link, waits=options.start_when_asked)
+            self._outputs = (Ros2Outputs(self._connection, context.robot),)
         link.start()
         if isinstance(clock, SimTimeClock) and not clock.wait_for_first(_CLOCK_TIMEOUT_S):
             self.close()
@@ -132,6 +139,14 @@ class Ros2(Driver):
         """Publish a zero."""
         if self._commander:
             self._commander.stop()
+
+    def asked(self) -> Sequence[Request]:
+        """What was called: stop, pause, go_on, save_map, explore."""
+        return self._services.asked() if self._services else ()
+
+    def observers(self) -> Sequence[Sink]:
+        """Map, path, marks, diagnostics, tree, as topics."""
+        return self._outputs
 
     def survey(self, listen_s: float) -> Sequence[Finding]:
         """Topics, types, rates, frames, delays, QoS, tf, and who listens to the commands."""
