@@ -1,4 +1,4 @@
-"""A stand-in for the SLAM that runs on a robot: ``python foreign_slam.py`` publishes map and tf, nothing else.
+"""A stand-in for the SLAM that runs on a robot: as a script it publishes map and tf, nothing else.
 
 It makes its map with our own SLAM, but what others see of it is /map and map → odom alone.
 """
@@ -12,16 +12,16 @@ import threading
 from typing import Any
 
 import numpy as np
-from nav_msgs.msg import OccupancyGrid as GridMessage
-from rclpy.qos import DurabilityPolicy, QoSProfile
-
-from explore_bt.interfaces import RobotContext
 from explore_bt_ros2.driver import Ros2
 from explore_bt_ros2.grids import grid_message
 from explore_bt_ros2.options import Ros2Options
 from explore_bt_ros2.stamps import stamp_message
 from explore_bt_ros2.transforms import Transform, encode
 from explore_bt_slam import KissGtsam
+from nav_msgs.msg import OccupancyGrid as GridMessage
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from explore_bt.interfaces import RobotContext
 
 _MAP_PERIOD_S = 0.5
 

@@ -37,6 +37,15 @@ class Process:
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
+    def __enter__(self) -> Process:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Nothing of a test outlives it."""
+        if self.run.poll() is None:
+            self.run.kill()
+            self.run.wait()
+
     @property
     def text(self) -> str:
         return "".join(self.lines)

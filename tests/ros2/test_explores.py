@@ -35,11 +35,9 @@ def test_the_apartment_is_explored_over_topics_at_three_times_the_speed_of_real_
     truth = tmp_path / "truth.json"
     sim = ["--seed", "1", "--speed", "3", "--set", start, "--out", truth]
     with robot_in(MISSIONS / "01_apartment.yaml", *sim):
-        mission = Process(
-            *("run", MISSIONS / "04_ros2.yaml", "--set", "sim=true", "--set", start),
-            *("--headless", "--out", tmp_path / "run"),
-        )
-        code = mission.finish(deadline_s=300.0)
+        words = ["run", MISSIONS / "04_ros2.yaml", "--set", "sim=true", "--set", start]
+        with Process(*words, "--headless", "--out", tmp_path / "run") as mission:
+            code = mission.finish(deadline_s=300.0)
     assert code == 0, mission.text
     assert coverage_of(tmp_path / "run") >= 0.98
     assert json.loads(truth.read_text())["contacts"] == 0

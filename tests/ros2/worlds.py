@@ -22,9 +22,7 @@ rooms:
 @contextmanager
 def robot_in(world: str | Path, *words: str | Path) -> Iterator[Process]:
     """``explore-bt ros2-sim`` with these words, ready."""
-    robot = Process("ros2-sim", world, *words)
-    try:
+    with Process("ros2-sim", world, *words) as robot:
         robot.wait_for("is on ROS 2")
         yield robot
-    finally:
         robot.end()

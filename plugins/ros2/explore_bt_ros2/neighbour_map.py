@@ -33,7 +33,7 @@ from explore_bt_ros2.grids import GridHistory, grid_of, nothing_known
 
 __all__ = ["Ros2Map", "Ros2MapOptions"]
 
-_JUMP_M, _JUMP_RAD, _DOUBT_S = 0.5, 0.5, 0.5
+_JUMP_M, _JUMP_RAD, _DOUBT_S = 0.5, 0.5, 2.0
 """A correction that large moves the robot to another place: it stands for a moment."""
 _COVARIANCE = np.diag([0.05**2, 0.05**2, 0.02**2])
 """Of a neighbour that tells none: 5 cm and 1°."""

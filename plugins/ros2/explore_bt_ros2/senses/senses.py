@@ -30,7 +30,7 @@ __all__ = ["Senses"]
 _AHEAD_S = 0.1
 """A stamp may be ahead of the clock by the jitter of two computers that are in step."""
 _OLD_S = 0.5
-_DOUBT_S = 0.5
+_DOUBT_S = 2.0
 """For so long a robot stands after its odometry was set anew."""
 _DEPTH = 50
 _POLL_S = 0.02
