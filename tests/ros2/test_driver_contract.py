@@ -20,7 +20,7 @@ from tests.ros2.worlds import HALL, robot_in
 def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     world = tmp_path_factory.mktemp("world") / "hall.yaml"
     world.write_text(HALL)
-    with robot_in(world, "--wall-time"):
+    with robot_in(world, "--speed", "4"):
         yield
 
 
@@ -28,4 +28,4 @@ class TestRos2(DriverContract):
     """Behind it stands a robot that moves on between the tests."""
 
     def make(self, tmp_path: Path) -> Driver:
-        return Ros2(Ros2Options())
+        return Ros2(Ros2Options(use_sim_time=True))

@@ -16,7 +16,8 @@ __all__ = ["explore_bt_register"]
 def explore_bt_register() -> Sequence[type]:
     """Driver, SLAM, controller and sink."""
     from explore_bt_ros2.driver import Ros2
+    from explore_bt_ros2.nav2 import Nav2
     from explore_bt_ros2.neighbour_map import Ros2Map
     from explore_bt_ros2.trial import Ros2Bridge
 
-    return [Ros2, Ros2Map, Ros2Bridge]
+    return [Ros2, Ros2Map, Nav2, Ros2Bridge]
