@@ -17,6 +17,7 @@ from explore_bt_ros2.connection import Connection
 from explore_bt_ros2.link import Link
 from explore_bt_ros2.options import Ros2Options
 from explore_bt_ros2.outputs import Ros2Outputs
+from explore_bt_ros2.parameters import with_parameters
 from explore_bt_ros2.senses import Senses
 from explore_bt_ros2.services import Services
 from explore_bt_ros2.stamps import seconds_of
@@ -26,8 +27,8 @@ from explore_bt_ros2.transforms import TransformBuffer
 __all__ = ["Ros2"]
 
 _CLOCK_TIMEOUT_S = 10.0
-_DISCOVERY_S = 3.0
-"""So long the first scan is waited for: nodes take up to two seconds to find each other."""
+_DISCOVERY_S = 5.0
+"""So long the first scan is waited for: nodes announce themselves every three seconds."""
 
 
 class Ros2(Driver):
@@ -56,9 +57,10 @@ class Ros2(Driver):
         """Join the network and subscribe; with ``use_sim_time``, wait for ``/clock``.
 
         Raises:
-            PluginError: ROS 2 cannot be started, no lidar is named, or nobody tells the time.
+            PluginError: ROS 2 cannot be started, no lidar is named, nobody tells the time,
+                or the file of parameters is at fault.
         """
-        options = self._options
+        options = self._options = with_parameters(self._options)
         if not (options.scan_topic or options.cloud_topic):
             raise PluginError(
                 "driver ros2: scan_topic and cloud_topic are both empty; name the lidar's topic"
