@@ -1,13 +1,16 @@
 """The contracts: one abstract class per plugin kind, and the values only they exchange."""
 
+from explore_bt.interfaces.bridge import Bridge
 from explore_bt.interfaces.controller import Controller, ControlOutput, ControlStatus
 from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.exporter import Exporter, RobotProduct
 from explore_bt.interfaces.filming import Filming
+from explore_bt.interfaces.finding import Finding
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.interfaces.planner import Planner, never
 from explore_bt.interfaces.playback import Playback, Recorded
 from explore_bt.interfaces.plugin import API_VERSION, Plugin, PluginOptions, Resumption, RobotContext
+from explore_bt.interfaces.request import Request
 from explore_bt.interfaces.services import MapMemory, MapView, Pilot, RobotServices
 from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.slam import Slam
@@ -25,6 +28,7 @@ from explore_bt.interfaces.truth import GroundTruth
 
 __all__ = [
     "API_VERSION",
+    "Bridge",
     "ControlOutput",
     "ControlStatus",
     "Controller",
@@ -32,6 +36,7 @@ __all__ = [
     "Event",
     "Exporter",
     "Filming",
+    "Finding",
     "GroundTruth",
     "HeldBy",
     "MapMemory",
@@ -45,6 +50,7 @@ __all__ = [
     "PluginOptions",
     "PortInfo",
     "Recorded",
+    "Request",
     "Resumption",
     "RobotContext",
     "RobotProduct",

@@ -8,7 +8,10 @@ from typing import ClassVar
 
 from explore_bt.clock import Clock
 from explore_bt.interfaces.filming import Filming
+from explore_bt.interfaces.finding import Finding
 from explore_bt.interfaces.plugin import Plugin, RobotContext
+from explore_bt.interfaces.request import Request
+from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.truth import GroundTruth
 from explore_bt.types import BodyFault, BodyShape, Measurement, MotionLimits, Pose2, Twist2
 
@@ -107,3 +110,27 @@ class Driver(Plugin):
             UserError: what draws them is not installed.
         """
         return None
+
+    def hindrance(self) -> str:
+        """Why the robot must not drive now, in words: a silent topic, a pressed emergency stop; else empty.
+
+        Asked every control period, so cheap. While there is a reason the robot brakes, and stands.
+        """
+        return ""
+
+    def asked(self) -> Sequence[Request]:
+        """What people asked through the robot's own buttons or services since the last call."""
+        return ()
+
+    @property
+    def connection(self) -> object:
+        """What plugins of the same family share with the driver (``RobotContext.connection``)."""
+        return None
+
+    def observers(self) -> Sequence[Sink]:
+        """Sinks that this robot wants to look on, made after ``setup``."""
+        return ()
+
+    def survey(self, listen_s: float) -> Sequence[Finding]:  # noqa: ARG002  # those that can listen do
+        """What can be heard of the robot while it stands; called after ``setup``, may take ``listen_s``."""
+        return ()

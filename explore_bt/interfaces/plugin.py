@@ -75,6 +75,7 @@ class RobotContext:
         shape: of the body, for who makes use of a 3D lidar.
         truth: the simulator's truth, None on hardware.
         resumed: where the run goes on, None for one that begins. ``start`` is still where the mission began.
+        connection: what the driver shares with plugins of its own family, None where it shares nothing.
     """
 
     robot: str = "robot"
@@ -85,6 +86,7 @@ class RobotContext:
     shape: BodyShape = BodyShape()
     truth: GroundTruth | None = None
     resumed: Resumption | None = None
+    connection: object = None
 
     def rng(self, stream: str) -> np.random.Generator:
         """An independent generator for one named use; the same seed, robot and name give the same."""

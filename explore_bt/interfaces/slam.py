@@ -15,8 +15,8 @@ __all__ = ["Slam"]
 class Slam(Plugin):
     """Where the robot is and what its surroundings look like.
 
-    All methods are called by one thread (the control thread in simulated time, a thread of its own in
-    wall time); what they return is immutable and may be read by others.
+    All methods are called by one thread, the control thread; what they return is immutable and may be read
+    by others.
     """
 
     kind = "slam"

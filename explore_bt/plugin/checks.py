@@ -8,6 +8,7 @@ import re
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import (
     API_VERSION,
+    Bridge,
     Controller,
     Driver,
     Exporter,
@@ -21,7 +22,7 @@ from explore_bt.tree import Leaf
 __all__ = ["CONTRACTS", "KINDS", "check_class", "kind_of", "name_of"]
 
 CONTRACTS: dict[str, type] = {
-    contract.kind: contract for contract in (Driver, Slam, Planner, Controller, Leaf, Sink, Exporter)
+    contract.kind: contract for contract in (Driver, Slam, Planner, Controller, Leaf, Sink, Exporter, Bridge)
 }
 """Kind -> the class to derive from."""
 

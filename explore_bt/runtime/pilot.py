@@ -16,6 +16,8 @@ STALE_SCAN_S = 0.5
 """A scan older than this is no ground to drive on: five missed sweeps of a 10 Hz lidar."""
 STALE_ESTIMATE_S = 1.0
 """An older one says little of here and now: the predictor knows the commands of two seconds only."""
+FORGET = 0.99
+"""Of what is added to a control period because periods have lately been late; gone after some seconds."""
 JUMP_M = 0.03
 JUMP_RAD = math.radians(3.0)
 """More than a body strays from its commands between two scans: the estimate was corrected."""
@@ -48,6 +50,7 @@ class Pilot:
         self._blocked_since_s: float | None = None
         self.held_by = HeldBy.NOTHING
         self._now_s = 0.0
+        self._in_force_s = 0.0
         self._shown: Estimate | None = None
         self._unseen: Surroundings | None = None
 
@@ -117,20 +120,30 @@ class Pilot:
         return self._predictor.predict(estimate, now_s)
 
     def step(self, estimate: Estimate, scan: Scan2D | None, now_s: float, dt_s: float) -> None:
-        """One control period: ask the controller, pass its wish through the gate, send the outcome."""
+        """One control period: ask the controller, pass its wish through the gate, send the outcome.
+
+        Args:
+            estimate: the newest pose.
+            scan: the newest scan.
+            now_s: the time.
+            dt_s: since the last command; the next may take as long as the longest of late.
+        """
         self._now_s = now_s
+        self._in_force_s = max(dt_s, FORGET * self._in_force_s)
         now = self.predict(estimate, now_s)
         if self._unseen is not None:
             surroundings, self._unseen = self._unseen, None
             self._controller.see(surroundings)
         self._output = self._controller.step(now, scan, self._motion_within_limits(), dt_s)
         body = self.body_fault
-        fault = body.reason if body else _unfit_to_drive(estimate, scan, now_s)
+        fault = body.reason if body else self._driver.hindrance() or _unfit_to_drive(estimate, scan, now_s)
         if fault:
             following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
             self.held_by = HeldBy.BODY if body else HeldBy.SENSES
         else:
-            decision = self._gate.decide(self._output.twist, now.T_map_base, self.motion, dt_s, now_s)
+            decision = self._gate.decide(
+                self._output.twist, now.T_map_base, self.motion, dt_s, now_s, self._in_force_s
+            )
             following, self.gate_reason = decision.motion, decision.reason
             self.held_by = decision.held_by
         if not self.gate_reason:

@@ -116,6 +116,7 @@ class Robot:
             limits=limits,
             shape=self.driver.shape,
             truth=self.driver.truth(),
+            connection=self.driver.connection,
         )
         self.home = cut.memory.home if cut else self.driver.start
         warm_up()

@@ -137,7 +137,13 @@ class SafetyGate:
         self._scans.clear()
 
     def decide(
-        self, wanted: Twist2, pose: Pose2, motion: MotionState, dt_s: float, now_s: float = 0.0
+        self,
+        wanted: Twist2,
+        pose: Pose2,
+        motion: MotionState,
+        dt_s: float,
+        now_s: float = 0.0,
+        in_force_s: float = 0.0,
     ) -> GateDecision:
         """Pass ``wanted`` on, or go on along the brake that was checked last.
 
@@ -147,9 +153,11 @@ class SafetyGate:
             motion: what was sent last.
             dt_s: the control period.
             now_s: the time, on the clock of the scans' stamps.
+            in_force_s: the command may drive for so long before the next one, if that is more than ``dt_s``.
         """
         following = _state_after(self._let_go_of_brake(wanted, motion, dt_s), motion, dt_s)
-        way = way_to_rest(following, pose, motion, self._limits, dt_s)
+        before = following if in_force_s > dt_s else motion
+        way = way_to_rest(following, pose, before, self._limits, max(in_force_s, dt_s))
         held_by, fault = HeldBy.OBSTACLE, self._fault_on_the_way(way, following)
         if not fault:
             held_by, fault = HeldBy.SOMEONE, self._fault_by_people(way, now_s)

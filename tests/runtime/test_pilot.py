@@ -58,6 +58,9 @@ class Wheels:
     def command(self, twist: Twist2) -> None:
         """Nothing hangs on it."""
 
+    def hindrance(self) -> str:
+        return ""
+
 
 @pytest.fixture
 def pilot() -> Pilot:
@@ -170,3 +173,21 @@ def test_a_brake_firmer_than_the_drive_keeps_its_own_limits_and_never_rolls_back
     assert np.abs(jerks).max() <= 30.0 + 1e-6
     let_go = before + held + 2
     assert min(speeds[let_go:]) > speeds[let_go] - 0.5**2 / (2.0 * 2.0)  # what levelling off costs
+
+
+def test_a_command_that_may_stay_in_force_for_longer_is_checked_for_as_long(pilot: Pilot) -> None:
+    wall = np.array([[0.6, 0.01 * n] for n in range(-60, 61)])
+    limits = MotionLimits()
+
+    def distance_at_hold(in_force_s: float) -> float:
+        """How far ahead of a wall at x = 0.6 m a gate lets a robot of 0.25 m drive at 0.2 m/s."""
+        gate = SafetyGate(0.25, limits)
+        motion = MotionState(Twist2(0.2, 0.0))
+        for x in np.arange(0.0, 0.3, 0.005):
+            gate.see(Surroundings(0.0, wall - [x, 0.0], FLOOR), Pose2(0.0, 0.0, 0.0))
+            if gate.decide(Twist2(0.2, 0.0), Pose2(0.0, 0.0, 0.0), motion, 0.05, 0.0, in_force_s).reason:
+                return float(0.6 - x)
+        raise AssertionError("never held")
+
+    longer_m = distance_at_hold(0.25) - distance_at_hold(0.05)
+    assert 0.2 * 0.2 - 0.006 <= longer_m <= 0.2 * 0.2 + 0.006

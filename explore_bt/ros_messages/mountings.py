@@ -1,17 +1,27 @@
-"""Where sensors sit on the robot, from the static transforms of a bag."""
+"""Where sensors sit on the robot, from static transforms."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Mountings", "planar", "rotation_of"]
+__all__ = ["Mountings", "Places", "link_of", "planar", "rotation_of"]
 
 _FARTHEST_M = 1e6
 _STILL = 1e-3
 _BASES = ("base_link", "base_footprint", "base")
+
+
+class Places(Protocol):
+    """Who knows where sensors sit on the robot."""
+
+    def of(self, frame: str) -> NDArray[np.float64]:
+        """(4, 4) float64 ``T_base_sensor``."""
+
+    def known(self, frame: str) -> NDArray[np.float64] | None:
+        """The same; None where nothing ties the frame to the robot."""
 
 
 class Mountings:
@@ -34,7 +44,7 @@ class Mountings:
             ValueError: a transform that is none.
         """
         for each in message.transforms:
-            self._parents[_plain(each.child_frame_id)] = _link(each)
+            self._parents[_plain(each.child_frame_id)] = link_of(each)
 
     def watch(self, message: Any) -> None:
         """Take in a ``tf2_msgs/TFMessage`` of transforms that may move: one that never does is as good.
@@ -43,7 +53,7 @@ class Mountings:
             ValueError: the same.
         """
         for each in message.transforms:
-            child, (parent, transform) = _plain(each.child_frame_id), _link(each)
+            child, (parent, transform) = _plain(each.child_frame_id), link_of(each)
             before = self._seen.setdefault(child, (parent, transform))
             if before and (before[0] != parent or not np.allclose(before[1], transform, atol=_STILL)):
                 self._seen[child] = None
@@ -76,8 +86,12 @@ class Mountings:
         return transform
 
 
-def _link(transform: Any) -> tuple[str, NDArray[np.float64]]:
-    """Parent frame and (4, 4) ``T_parent_child`` of a ``geometry_msgs/TransformStamped``."""
+def link_of(transform: Any) -> tuple[str, NDArray[np.float64]]:
+    """Parent frame and (4, 4) float64 ``T_parent_child`` of a ``geometry_msgs/TransformStamped``.
+
+    Raises:
+        ValueError: a transform that is none.
+    """
     T = np.eye(4)
     T[:3, :3] = rotation_of(transform.transform.rotation)
     shift = transform.transform.translation

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.ros_messages.cloud import point_cloud
+from explore_bt.ros_messages.mountings import Places, planar, rotation_of
 from explore_bt.types import Imu, Measurement, Pose2, Scan2D, WheelOdometry
-from explore_bt_drivers.replay.bag_cloud import point_cloud
-from explore_bt_drivers.replay.mountings import Mountings, planar, rotation_of
 
 __all__ = ["MESSAGES", "TRANSFORMS", "stamp_of"]
 
@@ -19,7 +19,7 @@ TRANSFORMS = "tf2_msgs/msg/TFMessage"
 _SLOWEST_SWEEP_S = 5.0
 
 
-def _scan(message: Any, mountings: Mountings, range_max_m: float | None) -> Scan2D:
+def _scan(message: Any, mountings: Places, range_max_m: float | None) -> Scan2D:
     """``sensor_msgs/LaserScan``: its stamp is the first beam's (REP-117 for the ranges)."""
     ranges = np.asarray(message.ranges, dtype=np.float64)
     reach_m = float(range_max_m or message.range_max)
@@ -48,7 +48,7 @@ def _scan(message: Any, mountings: Mountings, range_max_m: float | None) -> Scan
     )
 
 
-def _imu(message: Any, mountings: Mountings, _: float | None) -> Imu:
+def _imu(message: Any, mountings: Places, _: float | None) -> Imu:
     """``sensor_msgs/Imu``, turned into the axes of ``base_link``."""
     turn = mountings.of(message.header.frame_id)[:3, :3]
     return Imu(
@@ -58,14 +58,14 @@ def _imu(message: Any, mountings: Mountings, _: float | None) -> Imu:
     )
 
 
-def _odometry(message: Any, _: Mountings, __: float | None) -> WheelOdometry:
+def _odometry(message: Any, _: Places, __: float | None) -> WheelOdometry:
     """``nav_msgs/Odometry``: its pose, in the plane."""
     pose = message.pose.pose
     place = (_finite("position.x", pose.position.x), _finite("position.y", pose.position.y))
     return WheelOdometry(stamp_of(message), Pose2(*place, planar(rotation_of(pose.orientation))))
 
 
-def _cloud(message: Any, mountings: Mountings, _: float | None) -> Measurement:
+def _cloud(message: Any, mountings: Places, _: float | None) -> Measurement:
     return point_cloud(message, stamp_of(message), mountings.of(message.header.frame_id))
 
 
@@ -87,7 +87,7 @@ def _turned(rotation: NDArray[np.float64], vector: Any, name: str) -> tuple[floa
     return x, y, z
 
 
-MESSAGES: dict[str, Callable[[Any, Mountings, float | None], Measurement]] = {
+MESSAGES: dict[str, Callable[[Any, Places, float | None], Measurement]] = {
     "sensor_msgs/msg/LaserScan": _scan,
     "sensor_msgs/msg/PointCloud2": _cloud,
     "sensor_msgs/msg/Imu": _imu,

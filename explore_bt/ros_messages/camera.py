@@ -1,4 +1,4 @@
-"""The RGB-D camera of a bag: three topics that belong together, and frames made of them."""
+"""An RGB-D camera among ROS topics: three that belong together, and frames made of them."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from explore_bt.ros_messages.image import COLOURS, DEPTHS, Lens, colour, depth_m
+from explore_bt.ros_messages.image_pairs import ImagePairs
+from explore_bt.ros_messages.messages import stamp_of
+from explore_bt.ros_messages.mountings import Places
 from explore_bt.types import RgbdFrame
-from explore_bt_drivers.replay.bag_image import COLOURS, DEPTHS, Lens, colour, depth_m
-from explore_bt_drivers.replay.bag_messages import stamp_of
-from explore_bt_drivers.replay.image_pairs import ImagePairs
-from explore_bt_drivers.replay.mountings import Mountings
 
-__all__ = ["CAMERA_INFO", "IMAGE", "BagCamera", "CameraTopics", "choose_camera"]
+__all__ = ["CAMERA_INFO", "IMAGE", "CameraStream", "CameraTopics", "choose_camera"]
 
 IMAGE = "sensor_msgs/msg/Image"
 CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
@@ -35,7 +35,7 @@ def choose_camera(
     first_of: Callable[[str], Any],
     notes: list[str],
 ) -> CameraTopics | None:
-    """The one colour and registered depth stream among a bag's topics; why there is none goes to ``notes``.
+    """The one colour and registered depth stream among these topics; why there is none goes to ``notes``.
 
     Depth is registered where its frame and size are the colour image's. The ``CameraInfo`` is the one beside
     the colour image (``…/camera_info``), or beside the depth image.
@@ -69,8 +69,8 @@ def choose_camera(
     return CameraTopics(view, depth, info, str(firsts[view].header.frame_id))
 
 
-class BagCamera:
-    """Makes frames of a camera's messages, in the order of the bag.
+class CameraStream:
+    """Makes frames of a camera's messages, in the order they come.
 
     Args:
         topics: of the camera.
@@ -79,7 +79,7 @@ class BagCamera:
             an optical frame looks along z and is nowhere near ``base_link``.
     """
 
-    def __init__(self, topics: CameraTopics, mountings: Mountings, notes: list[str]) -> None:
+    def __init__(self, topics: CameraTopics, mountings: Places, notes: list[str]) -> None:
         self._topics = topics
         self._pairs: ImagePairs[Any] = ImagePairs()
         self._lens: Lens | None = None
