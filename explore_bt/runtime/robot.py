@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
@@ -375,17 +374,10 @@ class Robot:
         self._scan_pose, self._scan_twist = estimate.T_map_base, twist
         if self.pilot.has_jumped(estimate):
             self._people.forget()
-        points, grid = self._seen_points(), self.slam.grid()
-        around = self._people.around(scan, estimate.T_map_base, twist, points, grid)
+        points = np.ascontiguousarray(estimate.T_map_base.apply(steadied(scan).points()))
+        around = self._people.around(scan, estimate.T_map_base, twist, points, self.slam.grid())
         self.moving = around.moving
         self.pilot.see(around, estimate)
-
-    def _seen_points(self) -> NDArray[np.float64]:
-        """(N, 2) metres, ``map`` frame: the newest scan's returns, less noisy close by."""
-        if (scan := self.scan()) is None:
-            return np.empty((0, 2))
-        pose = self._estimate_of_scan(scan).T_map_base
-        return np.ascontiguousarray(pose.apply(steadied(scan).points()))
 
     def _estimate_of_scan(self, scan: Scan2D) -> Estimate:
         """The newest, carried forward to the scan where SLAM lags behind."""
