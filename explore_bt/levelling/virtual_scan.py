@@ -22,6 +22,7 @@ def virtual_scan(
     *,
     rise: float = 0.0,
     surface_m: float = 0.0,
+    bins: int = _BINS,
 ) -> Scan2D:
     """In each of 720 directions the nearest return between two heights above the floor.
 
@@ -37,8 +38,9 @@ def virtual_scan(
         rise: by so much for every metre away the lower height is higher, metres.
         surface_m: returns so little farther than the nearest are of the same surface, and their mean counts:
             the nearest of many noisy ones is always too near.
+        bins: how many directions.
     """
-    angles, ranges, times = _nearest(cloud.own, cloud.times_s, low_m, high_m, rise, _BINS)
+    angles, ranges, times = _nearest(cloud.own, cloud.times_s, low_m, high_m, rise, bins)
     if surface_m > 0.0:
         ranges = _averaged(cloud.own, ranges, low_m, high_m, rise, surface_m)
     return Scan2D(cloud.stamp_s, angles, ranges, times, 0.0, range_max_m, "base_link")
