@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from explore_bt.types import Pose2, RgbdFrame
 from explore_bt_slam.sight import Sight, SightMaker
-from explore_bt_slam.sight_match import SightMatch, match_sights
+from explore_bt_slam.sight_match import FEWEST, SightMatch, match_sights
 
 __all__ = ["Camera"]
 
@@ -37,6 +37,27 @@ class Camera:
         """How the last two keyframes lie to each other by what both see; None if that says nothing."""
         before, last = self._sights
         return None if before is None or last is None else match_sights(before, last)
+
+    def look(self, T_keyframe_now: Pose2) -> SightMatch | None:
+        """How the newest image lies to the last keyframe by what both see, without one being made.
+
+        None without an image or where the two say nothing. ``relative`` is ``T_keyframe_now``.
+
+        Args:
+            T_keyframe_now: where the robot believes to be, seen from the keyframe: it moves the image's own
+                place to that of the robot.
+        """
+        last = self._sights[1]
+        if self._newest is None or last is None:
+            return None
+        frame, T_keyframe_base = self._newest
+        return match_sights(last, self._maker.sight(frame, T_keyframe_now.between(T_keyframe_base)))
+
+    @property
+    def is_rich(self) -> bool:
+        """Whether the last keyframe's view has features enough to be found again."""
+        last = self._sights[1]
+        return last is not None and last.points.shape[0] >= FEWEST
 
     def sight(self, stamp_s: float, T_keyframe_new: Pose2) -> Sight | None:
         """What the keyframe made at ``stamp_s``, at ``T_keyframe_new`` from the last one, looks like.
