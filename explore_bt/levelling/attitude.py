@@ -48,8 +48,8 @@ class AttitudeFilter:
         self._rotation = np.eye(3)
         self._velocity = np.zeros(2)
         self._bias = np.zeros(3)
-        spread = [self._noise.tilt] * 2 + [self._noise.velocity] * 2 + [self._noise.gyro_bias] * 3
-        self._covariance = np.diag(np.array(spread) ** 2)
+        self._covariance = self._at_start()
+        self._yaw_rad = 0.0
         self._last: tuple[float, NDArray[np.float64]] | None = None
         self._history: deque[tuple[float, NDArray[np.float64]]] = deque()
 
@@ -77,7 +77,7 @@ class AttitudeFilter:
         """
         sample = np.array([*imu.angular_velocity_rps, *imu.linear_acceleration_mps2])
         if self._last is None:
-            self._rotation = _upright(sample[3:])
+            self._rotation = _turn(np.array([0.0, 0.0, self._yaw_rad])) @ _upright(sample[3:])
         else:
             stamp_s, before = self._last
             dt_s = imu.stamp_s - stamp_s
@@ -92,6 +92,15 @@ class AttitudeFilter:
             self._history.popleft()
         return self._levelled(imu, sample)
 
+    def stand(self) -> None:
+        """The body stands still now, however it was thrown about: the next sample says where is down."""
+        self._yaw_rad = self._heading()
+        self._last = None
+        self._velocity = np.zeros(2)
+        bias = self._covariance[4:, 4:].copy()
+        self._covariance = self._at_start()
+        self._covariance[4:, 4:] = bias
+
     def correct(self, velocity_mps: NDArray[np.float64], sigma_mps: float) -> None:
         """The robot moves at this speed: what the accelerometer adds to it is tilt.
 
@@ -99,7 +108,7 @@ class AttitudeFilter:
             velocity_mps: (2,) float64 over ground, axes of the level ``base_link`` (x ahead, y left).
             sigma_mps: its standard deviation; the robot's speed limit if nothing is known (velocity 0).
         """
-        yaw = math.atan2(self._rotation[1, 0], self._rotation[0, 0])
+        yaw = self._heading()
         cos, sin = math.cos(yaw), math.sin(yaw)
         measured = np.array([[cos, -sin], [sin, cos]]) @ velocity_mps
         P = self._covariance
@@ -122,8 +131,15 @@ class AttitudeFilter:
         rotations = np.array([rotation for _, rotation in self._history])
         return np.asarray(_interpolated(stamps_s, times, rotations))
 
+    def _at_start(self) -> NDArray[np.float64]:
+        spread = [self._noise.tilt] * 2 + [self._noise.velocity] * 2 + [self._noise.gyro_bias] * 3
+        return np.diag(np.array(spread) ** 2)
+
+    def _heading(self) -> float:
+        return math.atan2(self._rotation[1, 0], self._rotation[0, 0])
+
     def _levelled(self, imu: Imu, sample: NDArray[np.float64]) -> Imu:
-        yaw = math.atan2(self._rotation[1, 0], self._rotation[0, 0])
+        yaw = self._heading()
         cos, sin = math.cos(yaw), math.sin(yaw)
         level = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ self._rotation
         rates, forces = (level @ part for part in (sample[:3], sample[3:]))

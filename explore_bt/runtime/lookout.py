@@ -50,6 +50,11 @@ class Lookout:
         elif isinstance(measurement, PointCloud) and not self._is_planar:
             self._look(measurement, twist)
 
+    @property
+    def range_m(self) -> float:
+        """How far the lidar sees."""
+        return self.scan.range_max_m if self.scan else _USUAL_RANGE_M
+
     def forget(self) -> None:
         """No scan of before is worth anything now."""
         self.scan = None

@@ -31,6 +31,7 @@ from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
+from explore_bt.runtime.upright import Upright
 from explore_bt.runtime.way_finder import WayFinder
 from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
@@ -50,7 +51,6 @@ from explore_bt.types import (
 
 __all__ = ["Robot"]
 
-DEFAULT_LIDAR_RANGE_M = 5.0
 REASON_KEY = "reason"
 """Blackboard entry in which a tree may say why it ended."""
 OVER_BUDGET_KEY = "over_budget"
@@ -82,6 +82,7 @@ class Robot:
         self._counts = TickCounts(self.tree.nodes)
         self._sketch = Sketch()
         self._lookout = Lookout()
+        self._upright = Upright(self.driver, self.slam)
         self._scan_pose: Pose2 | None = None
         self._scan_twist = Twist2()
         self._measured: list[Measurement] = []
@@ -126,7 +127,7 @@ class Robot:
         self._planner.setup(context)
         self._controller.setup(context)
         self._lookout = Lookout(self.driver.shape)
-        gate = SafetyGate(self.driver.footprint_radius_m, limits)
+        gate = SafetyGate(self.driver.footprint_radius_m, limits, self.driver.command_delay_s)
         self.pilot = Pilot(self._controller, gate, self.driver)
         self.scores = Scorekeeper(self.home, context.truth)
         parts: dict[str, Remembering] = {
@@ -151,8 +152,7 @@ class Robot:
     @property
     def lidar_range_m(self) -> float:
         """How far the lidar sees."""
-        scan = self.scan()
-        return scan.range_max_m if scan else DEFAULT_LIDAR_RANGE_M
+        return self._lookout.range_m
 
     @property
     def stop_requested(self) -> bool:
@@ -357,7 +357,7 @@ class Robot:
         if isinstance(measurement, Battery):
             self._purse.take(measurement)
             return
-        if self._slam_fault:
+        if self._slam_fault or not self._upright.passes():
             return
         self._measured.append(measurement)
         self._keeping.hear(measurement)

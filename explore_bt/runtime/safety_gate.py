@@ -83,8 +83,16 @@ class _Brake:
 class SafetyGate:
     """Checks commands for one robot and brakes for it when it must."""
 
-    def __init__(self, footprint_radius_m: float, limits: MotionLimits) -> None:
+    def __init__(self, footprint_radius_m: float, limits: MotionLimits, delay_s: float = 0.0) -> None:
+        """Guard a robot.
+
+        Args:
+            footprint_radius_m: of the robot.
+            limits: of its motion.
+            delay_s: so much later than its commands it is where they lead: people walk on meanwhile.
+        """
         self._radius_m = footprint_radius_m
+        self._delay_s = delay_s
         self._limits = limits
         self._brake = _Brake(MotionState())
         self._window = ClearanceWindow(LOOK_AHEAD_M)
@@ -175,7 +183,7 @@ class SafetyGate:
         if away_m[0] < 0.0:
             self._unsure_until_s = now_s + TOUCHED_S
         moving = _until(way.speeds_mps, AT_REST_MPS)
-        times_s = now_s + way.times_s[moving]
+        times_s = now_s + self._delay_s + way.times_s[moving]
         spare_m = np.maximum(
             away_m[moving] - WALKING_MPS * (times_s - around.stamp_s),
             self._spare_in_the_open_m(way.poses[moving, :2], times_s, around),
@@ -202,7 +210,7 @@ class SafetyGate:
         if not len(ahead) or self._from_hidden is None:
             return ""
         away_m = self._from_hidden.to(ahead) - self._radius_m
-        walked_m = WALKING_MPS * (now_s + way.times_s[fast] - around.stamp_s)
+        walked_m = WALKING_MPS * (now_s + self._delay_s + way.times_s[fast] - around.stamp_s)
         if (away_m - walked_m).min() >= 0.0:
             return ""
         return "someone may step out before the robot is slow"

@@ -173,7 +173,7 @@ def test_a_fallen_robot_is_stood_up_where_it_lies_and_drives_on() -> None:
     stage.body.stand_up()
     stage.wait(1.0)
     assert stage.body.stance is Stance.LIFTED
-    stage.wait(2.0)
+    stage.wait(3.0)
     assert stage.body.stance is Stance.STANDING
     assert stage.body.pose.distance_to(lying) < 0.15
     assert stage.body.pose.yaw_rad == pytest.approx(lying.yaw_rad, abs=0.01)

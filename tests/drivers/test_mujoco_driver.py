@@ -169,8 +169,9 @@ def test_a_fallen_robot_says_so_and_is_stood_up_on_request() -> None:
     assert driver.fault.kind is BodyFaultKind.FALLEN
     assert driver.recover()
     assert driver.fault.kind is BodyFaultKind.RECOVERING
-    drive(driver, Twist2(), 2.5)
+    drive(driver, Twist2(), 4.0)
     assert driver.fault is None
+    assert driver.truth().clearance_m() > 0.27
 
 
 def test_a_resumed_run_goes_on_where_and_when_it_broke_off() -> None:

@@ -82,3 +82,21 @@ def test_a_sample_from_the_past_moves_nothing() -> None:
     before = attitude.rotation
     attitude.take_imu(Imu(0.5, (3.0, 0.0, 0.0), tilted(0.1, 0.0)))
     assert np.array_equal(attitude.rotation, before)
+
+
+def test_a_body_that_was_thrown_about_and_stands_again_knows_down_at_once_and_keeps_heading_and_bias() -> (
+    None
+):
+    attitude = AttitudeFilter()
+    still = tilted(0.0, 0.0)
+    for step in range(500):
+        attitude.take_imu(Imu(step * STEP_S, (0.0, 0.0, 0.2), still))
+    heading = math.atan2(attitude.rotation[1, 0], attitude.rotation[0, 0])
+    attitude.take_imu(Imu(501 * STEP_S, (0.0, 30.0, 0.0), (40.0, 5.0, -3.0)))
+    bias = attitude.gyro_bias_rps
+    attitude.stand()
+    attitude.take_imu(Imu(2000 * STEP_S, (0.0, 0.0, 0.0), tilted(0.1, -0.05)))
+    assert np.allclose(attitude.tilt_rad, (0.1, -0.05), atol=1e-9)
+    now = math.atan2(attitude.rotation[1, 0], attitude.rotation[0, 0])
+    assert abs(now - heading) < 0.05
+    np.testing.assert_array_equal(attitude.gyro_bias_rps, bias)

@@ -182,6 +182,20 @@ def test_the_driver_s_word_on_the_body_s_height_counts() -> None:
     assert known[0.5] != OCCUPIED
 
 
+def test_floor_about_the_start_is_believed_where_nothing_is_seen_on_it_and_not_behind_walls() -> None:
+    """A lidar at 0.5 m sees no floor nearer than 1.9 m; what is behind the wall stays unknown."""
+    known = {}
+    for clear_m in (0.0, 1.0):
+        robot = BalancingRobot(two_rooms(), Pose2(-2.6, 0.0, 0.0))
+        slam = ready(robot, clear_start=clear_m, robot_height="1.5 m")
+        drive(slam, robot.drive(0.0, 0.0, 1.0))
+        known[clear_m] = slam.grid()
+    assert known[0.0].value_at(-2.1, 0.2) == UNKNOWN
+    assert known[1.0].value_at(-2.1, 0.2) == FREE
+    assert known[1.0].value_at(-3.3, 0.0) != FREE
+    assert known[1.0].value_at(-3.02, 0.0) == OCCUPIED
+
+
 def _signatures() -> dict[str, int]:
     """How many versions of each kernel there are by now."""
     parts = ("attitude", "level_cloud", "virtual_scan")

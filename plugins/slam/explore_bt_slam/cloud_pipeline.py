@@ -35,7 +35,12 @@ class CloudPipeline(Pipeline):
         heights = _heights(options, context.shape)
         self._base_m = context.shape.base_height_m if options.base_height is None else options.base_height
         self.voxel_mapper = VoxelMapper(
-            options.resolution, context.footprint_radius_m, heights, options.max_range, revision
+            options.resolution,
+            context.footprint_radius_m,
+            heights,
+            options.max_range,
+            revision,
+            options.clear_start,
         )
         self.mapper = self.voxel_mapper
         self.mapper.begin(self._start, Pose2.identity())
@@ -73,6 +78,11 @@ class CloudPipeline(Pipeline):
             self._attitude.correct(self.front.velocity_mps, _SPEED_SIGMA_MPS)
         else:
             self._attitude.correct(np.zeros(2), self._speed_limit_mps)
+
+    def pick_up(self) -> None:
+        """What the IMU told before is no word on which way is down now."""
+        super().pick_up()
+        self._attitude.stand()
 
     def figures(self) -> dict[str, float]:
         """Also submaps, and megabytes of voxels."""

@@ -39,6 +39,11 @@ class KissGtsamOptions(GroundTruthOptions):
     map_height: Length = Field(2.0, gt=0.0, description="3D lidar: what is higher is not kept")
     match_low: Length = Field(0.3, description="3D lidar: what is lower is not registered")
     match_high: Length = Field(2.0, description="3D lidar: what is higher is not registered")
+    clear_start: Length = Field(
+        0.0,
+        ge=0.0,
+        description="3D lidar: floor about the start that is taken for free where nothing is seen on it",
+    )
     use_odometry: bool = Field(False, description="trust the wheels for the speed between scans")
 
     @model_validator(mode="after")

@@ -132,8 +132,8 @@ class Mujoco(Driver):
         return None if self._simulation is None else self._simulation.fault
 
     def recover(self) -> bool:
-        """Have somebody stand it up, which takes two seconds."""
-        self._running().body.stand_up()
+        """Have somebody stand it up, which takes some seconds."""
+        self._running().stand_up()
         return True
 
     def close(self) -> None:

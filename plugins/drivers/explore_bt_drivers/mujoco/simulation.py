@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Protocol
@@ -13,8 +14,10 @@ from explore_bt.interfaces import RobotContext
 from explore_bt.types import BodyFault, BodyFaultKind, Measurement, Pose2
 from explore_bt_drivers.battery import BatteryGauge
 from explore_bt_drivers.mujoco.body import Body, Stance, add_robot
+from explore_bt_drivers.mujoco.camera import RgbdCamera
 from explore_bt_drivers.mujoco.contacts import Contacts
 from explore_bt_drivers.mujoco.encoders import Encoders
+from explore_bt_drivers.mujoco.figures import BODY_RADIUS_M
 from explore_bt_drivers.mujoco.imu import InertialUnit
 from explore_bt_drivers.mujoco.lidar import VelodyneLike
 from explore_bt_drivers.mujoco.options import MujocoOptions
@@ -24,6 +27,8 @@ from explore_bt_drivers.mujoco.track import ON_STEP, STEP_S, Track
 __all__ = ["Simulation", "compiled"]
 
 _CHUNK_STEPS = 50
+_HAND_STEP_M, _HAND_CELLS = 0.05, 20
+"""Places up to 1 m from where a robot lies are tried for standing it up."""
 _FAULTS = {
     Stance.FALLEN: BodyFault(BodyFaultKind.FALLEN, "the robot has fallen"),
     Stance.LIFTED: BodyFault(BodyFaultKind.RECOVERING, "the robot is being stood up"),
@@ -63,11 +68,16 @@ class Simulation(ManualClock):
         self.body = Body(model, self.data, options.limits, step)
         self.surroundings.settle(self.data, step, *self.body.pose.xy)
         self.contacts = Contacts(model)
-        self._model = model
+        self._cameras = (
+            ()
+            if options.image_size is None
+            else (RgbdCamera(model, self.surroundings, options, context.rng("camera")),)
+        )
         self._sensors: tuple[_Sensor, ...] = (
             InertialUnit(options, context.rng("imu")),
             Encoders(options, context.rng("wheels")),
             VelodyneLike(self.surroundings, options, context.rng("lidar")),
+            *self._cameras,
             *(() if options.battery_life is None else (BatteryGauge(options.battery_life),)),
         )
         self._queue: list[Measurement] = []
@@ -94,8 +104,18 @@ class Simulation(ManualClock):
         """Why the body cannot drive; None while it stands."""
         return _FAULTS.get(self.body.stance)
 
+    def stand_up(self) -> None:
+        """Have a fallen robot stood up, as near to where it lies as there is room."""
+        x, y = self.body.pose.xy
+        world, steps = self.surroundings.world, range(-_HAND_CELLS, _HAND_CELLS + 1)
+        about = sorted(itertools.product(steps, steps), key=lambda step: math.hypot(*step))
+        places = ((x + _HAND_STEP_M * dx, y + _HAND_STEP_M * dy) for dx, dy in about)
+        self.body.stand_up(next((at for at in places if world.clearance_m(*at) > BODY_RADIUS_M), (x, y)))
+
     def close(self) -> None:
-        """Let go of what sensors hold."""
+        """Let go of what sensors hold. Idempotent."""
+        for camera in self._cameras:
+            camera.close()
 
     def _next_stop(self) -> int:
         """The step at which to look at sensors again, counted from 0: it does not depend on the waiting."""

@@ -24,6 +24,8 @@ __all__ = ["Body", "Stance"]
 _STEPS = round(CONTROL_S / STEP_S)
 _FALLEN_RAD = 0.6
 """No pitch from which this body comes back."""
+_CALM_STEPS = round(1.5 / STEP_S)
+"""A body that was stood up sways for so long."""
 _STILL = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -68,6 +70,7 @@ class Body:
         self._accelerometer = int(model.sensor("accelerometer").adr[0])
         self._row, self._wish = np.zeros(15), Wish()
         self._lift: Lift | None = None
+        self._calm_step = 0
         self.stance = Stance.STANDING
         self.falls = 0
         mujoco.mj_forward(model, data)
@@ -93,11 +96,15 @@ class Body:
         """Brake as the limits allow and stand until the next command."""
         self._orders.halt()
 
-    def stand_up(self) -> None:
-        """Have a fallen body stood up where it lies, as a hand would do it; takes two seconds."""
+    def stand_up(self, where: tuple[float, float] | None = None) -> None:
+        """Have a fallen body stood up, as a hand would do it, and held until it balances; takes 3.5 seconds.
+
+        Args:
+            where: its axle is to stand, metres, ``map`` frame; None: where it lies.
+        """
         if self.stance is Stance.FALLEN:
             self.halt()
-            self._lift = Lift(self.track.now, self.pose)
+            self._lift = Lift(self.track.now, self.pose.yaw_rad, where)
             self.stance = Stance.LIFTED
 
     def advance(self, last_step: int) -> None:
@@ -112,6 +119,8 @@ class Body:
             self.track.add(self._state())
 
     def _control(self, period: int) -> None:
+        if self.stance is Stance.LIFTED and self._lift is None and self.track.last_step >= self._calm_step:
+            self.stance = Stance.STANDING
         if self.stance is Stance.STANDING:
             self._find_fall()
         order = self._orders.at(period)
@@ -122,7 +131,7 @@ class Body:
         w += 0.5 * (alpha + alpha_next) * CONTROL_S
         self._setpoint = (v, a_next, w, alpha_next)
         self._wish = self._foresight.wish(self._setpoint)
-        if self.stance is Stance.STANDING:
+        if self.stance is Stance.STANDING or (self.stance is Stance.LIFTED and self._lift is None):
             self._data.ctrl[self._motors] = self._balance.torques(self._felt(), self._wish)
         else:
             self._data.ctrl[self._motors] = 0.0
@@ -148,7 +157,7 @@ class Body:
         data.time += STEP_S
         mujoco.mj_forward(self._model, data)
         if lift.is_over:
-            self._lift, self.stance = None, Stance.STANDING
+            self._lift, self._calm_step = None, self.track.last_step + _CALM_STEPS
             self._rest()
 
     def _rest(self) -> None:

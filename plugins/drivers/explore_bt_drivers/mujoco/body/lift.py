@@ -6,7 +6,6 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.types import Pose2
 from explore_bt_drivers.mujoco.body.posture import upright
 from explore_bt_drivers.mujoco.figures import WHEEL_RADIUS_M
 from explore_bt_drivers.mujoco.track import STEP_S
@@ -17,17 +16,21 @@ _LIFT_S = 2.0
 
 
 class Lift:
-    """Turns a body upright about its axle, which comes down to the height of the wheels' radius.
+    """Turns a body upright about its axle, which goes to where there is room for it.
 
     Args:
         row: the body's state, as in a ``Track``.
-        pose: the same from above: the heading that it keeps.
+        yaw_rad: the heading that it keeps.
+        where: its axle goes to, metres, ``map`` frame; None: where it is.
     """
 
-    def __init__(self, row: NDArray[np.float64], pose: Pose2) -> None:
+    def __init__(
+        self, row: NDArray[np.float64], yaw_rad: float, where: tuple[float, float] | None = None
+    ) -> None:
         self._quaternion = row[3:7].copy()
         self._axle = row[:3] + WHEEL_RADIUS_M * _up(self._quaternion)
-        self._end = np.array(upright(pose.yaw_rad))
+        self._end = np.array(upright(yaw_rad))
+        self._axle_end = np.array([*(where or self._axle[:2]), WHEEL_RADIUS_M])
         self._steps, self._step = round(_LIFT_S / STEP_S), 0
         self._before = self._place(0.0)
 
@@ -54,8 +57,7 @@ class Lift:
         mujoco.mju_subQuat(turn, self._end, self._quaternion)
         quaternion = self._quaternion.copy()
         mujoco.mju_quatIntegrate(quaternion, turn, share)
-        axle = self._axle.copy()
-        axle[2] += share * (WHEEL_RADIUS_M - axle[2])
+        axle = self._axle + share * (self._axle_end - self._axle)
         return np.concatenate((axle - WHEEL_RADIUS_M * _up(quaternion), quaternion))
 
 
