@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 import pytest
 from explore_bt_slam import KissGtsam
-from explore_bt_slam.camera import Camera
+from explore_bt_slam.camera import Camera, Look
+from explore_bt_slam.sight import SightMaker
 
 from explore_bt.interfaces import RobotContext
 from explore_bt.testing.slam_camera import PLAIN, RoomCamera, filmed
@@ -64,16 +65,42 @@ def test_a_look_is_the_step_that_a_keyframe_there_would_have_seen() -> None:
     room_camera, camera = RoomCamera(CORRIDOR, np.arange(3)), Camera()
     begin, now = Pose2(5.0, 0.0, 0.0), Pose2(5.4, 0.02, 0.03)
     camera.first(room_camera.frame(0.0, begin), Pose2.identity())
-    assert camera.look(Pose2.identity()) is None
+    assert camera.look(Pose2.identity()) == Look()
     camera.take(room_camera.frame(1.0, now), Pose2.identity())
     believed = Pose2.identity()
     looked = camera.look(believed)
-    assert looked is not None
-    assert looked.relative.distance_to(begin.between(now)) < 0.05
+    assert looked.is_rich
+    assert looked.match is not None
+    assert looked.match.relative.distance_to(begin.between(now)) < 0.05
     camera.sight(1.0, believed)
     step = camera.step()
     assert step is not None
-    assert step.relative == looked.relative
+    assert step.relative == looked.match.relative
+    camera.take(room_camera.frame(1.2, now), Pose2.identity())
     camera.forget()
-    assert camera.look(believed) is None
-    assert not camera.is_rich
+    assert camera.look(believed) == Look()
+
+
+def test_a_view_without_texture_is_not_rich() -> None:
+    camera = Camera()
+    camera.take(
+        RoomCamera(CORRIDOR, np.full(3, PLAIN), grey_noise=0.0).frame(0.0, Pose2(5.0, 0.0, 0.0)),
+        Pose2.identity(),
+    )
+    assert camera.look(Pose2.identity()) == Look()
+
+
+def test_features_are_sought_where_there_is_depth() -> None:
+    """A far wall full of corners must not use up what the near ones could give."""
+    frame = RoomCamera(CORRIDOR, np.arange(3)).frame(0.0, Pose2(5.0, 0.0, 0.0))
+    far = np.random.default_rng(0).integers(0, 256, frame.image.shape, dtype=np.uint8)
+    is_near = frame.depth_m < 3.0
+    busy = dataclasses.replace(
+        frame,
+        image=np.where(is_near, frame.image, far),
+        depth_m=np.where(is_near, frame.depth_m, np.float32(np.nan)),
+    )
+    alone = dataclasses.replace(busy, image=np.where(is_near, frame.image, np.uint8(128)))
+    found, expected = (SightMaker().sight(each, Pose2.identity()).points.shape[0] for each in (busy, alone))
+    assert expected > 30
+    assert found > 0.8 * expected

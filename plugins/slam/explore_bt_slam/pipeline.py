@@ -224,10 +224,11 @@ class Pipeline:
             return False
         self._looked_s = stamp_s
         since_s = stamp_s - self.back.keyframes[self._keyframe].stamp_s
-        seen = self.camera.look(self._relative)
-        if seen is None:
-            return self.camera.is_rich and since_s >= _UNRECOGNISED_S
-        return float(np.hypot(seen.relative.x, seen.relative.y)) >= _SEEN_SHARE * self._rule.distance_m
+        look = self.camera.look(self._relative)
+        if look.match is None:
+            return look.is_rich and since_s >= _UNRECOGNISED_S
+        step = look.match.relative
+        return float(np.hypot(step.x, step.y)) >= _SEEN_SHARE * self._rule.distance_m
 
     def _seen_step(
         self, camera: Camera, stamp_s: float, covariance: NDArray[np.float64]
