@@ -221,7 +221,7 @@ def main() -> None:
     print("| course | seed | camera closures | rmse cm | worst cm | end cm | closures | CPU ms / scan |")
     print("|---|---|---|---|---|---|---|---|")
     table: list[Row] = []
-    for course, seed in itertools.product(arguments.courses, range(arguments.seeds)):
+    for seed, course in itertools.product(range(arguments.seeds), arguments.courses):
         for row in run(course, seed, states):
             table.append(row)
             print(
