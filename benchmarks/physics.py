@@ -161,11 +161,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=5, help="seeds 0 to N-1; 0: the driver alone")
     parser.add_argument("--camera", choices=_CAMERAS, default="320x240", help="of the missions")
+    parser.add_argument("--missions-only", action="store_true", help="leave the driver alone out")
     parser.add_argument("--json", type=Path, help="write all figures to a file too")
     arguments = parser.parse_args()
     print(f"driver mujoco in {APARTMENT.name}, {describe_machine()}\n")
     with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
-        drivers = [pool.apply(alone, (camera,)) for camera in _CAMERAS]
+        cameras = () if arguments.missions_only else _CAMERAS
+        drivers = [pool.apply(alone, (camera,)) for camera in cameras]
         print("| camera | set-up | real time × | shares |\n|---|---|---|---|")
         for found in drivers:
             print(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -36,19 +37,19 @@ class Lookout:
         self._attitude = AttitudeFilter()
         self._is_planar = False
 
-    def hear(self, measurement: Measurement, twist: Twist2) -> None:
+    def hear(self, measurement: Measurement, twist_at: Callable[[float], Twist2]) -> None:
         """Take one measurement, in time order.
 
         Args:
             measurement: of any kind.
-            twist: of the robot, as it was told: it keeps a speed from being taken for a slope.
+            twist_at: of the robot at a time, as it was told: it keeps a speed from being taken for a slope.
         """
         if isinstance(measurement, Scan2D):
             self.scan, self._is_planar = measurement, True
         elif isinstance(measurement, Imu):
             self._feel(measurement)
         elif isinstance(measurement, PointCloud) and not self._is_planar:
-            self._look(measurement, twist)
+            self._look(measurement, twist_at(measurement.stamp_s))
 
     @property
     def range_m(self) -> float:

@@ -89,12 +89,20 @@ class Pilot:
         """Whether the pose is elsewhere than the one shown last and the commands since then lead to."""
         if self._shown is None:
             return False
-        expected = self._predictor.predict(self._shown, estimate.stamp_s).T_map_base
+        expected = self._predictor.carry(self._shown, estimate.stamp_s).T_map_base
         off = expected.inverse().compose(estimate.T_map_base)
         return math.hypot(off.x, off.y) > JUMP_M or abs(off.yaw_rad) > JUMP_RAD
 
+    def twist_at(self, time_s: float) -> Twist2:
+        """What the body drove at a time of the last seconds, its lag behind its commands counted."""
+        return self._predictor.twist_at(time_s)
+
+    def carry(self, estimate: Estimate, time_s: float) -> Estimate:
+        """The estimate carried forward to a time of the last seconds, the body's lag counted."""
+        return self._predictor.carry(estimate, time_s)
+
     def predict(self, estimate: Estimate, now_s: float) -> Estimate:
-        """The estimate carried forward to now along the commands sent since its stamp."""
+        """Where all that was sent leads to, from the estimate."""
         return self._predictor.predict(estimate, now_s)
 
     def step(self, estimate: Estimate, scan: Scan2D | None, now_s: float, dt_s: float) -> None:

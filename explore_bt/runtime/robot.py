@@ -353,7 +353,7 @@ class Robot:
         self.scores.control_step(pose, self.pilot.motion, now_s, dt_s)
 
     def _take(self, measurement: Measurement) -> None:
-        self._lookout.hear(measurement, self.pilot.motion.twist)
+        self._lookout.hear(measurement, self.pilot.twist_at)
         if isinstance(measurement, Battery):
             self._purse.take(measurement)
             return
@@ -369,12 +369,12 @@ class Robot:
 
     def _show_gate(self, scan: Scan2D) -> None:
         estimate = self._estimate_of_scan(scan)
-        self._scan_pose, self._scan_twist = estimate.T_map_base, self.pilot.motion.twist
+        twist = self.pilot.twist_at(scan.stamp_s + float(scan.times_s.mean()))
+        self._scan_pose, self._scan_twist = estimate.T_map_base, twist
         if self.pilot.has_jumped(estimate):
             self._people.forget()
-        around = self._people.around(
-            scan, estimate.T_map_base, self.pilot.motion.twist, self._seen_points(), self.slam.grid()
-        )
+        points, grid = self._seen_points(), self.slam.grid()
+        around = self._people.around(scan, estimate.T_map_base, twist, points, grid)
         self.moving = around.moving
         self.pilot.see(around, estimate)
 
@@ -389,7 +389,7 @@ class Robot:
         """The newest, carried forward to the scan where SLAM lags behind."""
         estimate = self.slam.estimate()
         is_late = estimate.stamp_s < scan.stamp_s
-        return self.pilot.predict(estimate, scan.stamp_s) if is_late else estimate
+        return self.pilot.carry(estimate, scan.stamp_s) if is_late else estimate
 
     def _read(self) -> Sequence[Measurement]:
         try:

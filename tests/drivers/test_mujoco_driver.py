@@ -146,6 +146,21 @@ def test_a_table_top_counts_as_a_contact_where_the_mast_meets_it(tmp_path: Path)
     assert driver.truth().pose().x == pytest.approx(2.95, abs=0.15)
 
 
+def test_sills_and_ramps_are_driven_over_and_are_no_contacts(tmp_path: Path) -> None:
+    world = tmp_path / "steps.yaml"
+    world.write_text(
+        "format: explore-bt-world/1\n"
+        "rooms: [{name: a, box: [0, 0, 4, 3]}, {name: b, box: [4, 0, 9, 3]}]\n"
+        "doors: [{name: door, at: [4, 1.5], width: 1 m, sill: 2 cm}]\n"
+        "ramps: [{name: ramp, box: [5, 0.5, 8, 2.5], slope: 3 deg, level: 20 cm}]\n"
+    )
+    driver = ready(world, RobotContext(start=Pose2(3.0, 1.5, 0.0)), columns=90)
+    drive(driver, Twist2(0.4, 0.0), 13.0)
+    assert driver.fault is None
+    assert driver.truth().pose().x > 7.5
+    assert driver.truth().contacts() == 0
+
+
 def test_who_walks_into_a_standing_robot_is_not_its_contact(tmp_path: Path) -> None:
     world = tmp_path / "person.yaml"
     world.write_text(

@@ -26,7 +26,7 @@ def look(scene: Scene3, pitch_deg: float = 0.0, speed: float = 0.0) -> tuple[Loo
     robot = BalancingRobot(scene, Pose2(0.0, 0.0, 0.0), pitch_rad=math.radians(pitch_deg))
     lookout = Lookout(SHAPE)
     for measurement in robot.drive(speed, 0.0, 2.0):
-        lookout.hear(measurement, Twist2(speed, 0.0))
+        lookout.hear(measurement, lambda _: Twist2(speed, 0.0))
     return lookout, robot
 
 
@@ -73,9 +73,9 @@ def test_speed_that_was_told_is_not_taken_for_a_slope() -> None:
 def test_a_planar_lidar_is_listened_to_instead() -> None:
     lookout, robot = look(room())
     planar = full_circle_scan(2.0)
-    lookout.hear(planar, Twist2())
+    lookout.hear(planar, lambda _: Twist2())
     for measurement in robot.drive(0.0, 0.0, 0.3):
-        lookout.hear(measurement, Twist2())
+        lookout.hear(measurement, lambda _: Twist2())
     assert lookout.scan is planar
 
 
@@ -85,5 +85,5 @@ def test_a_sweep_that_cannot_be_read_leaves_the_scan_to_grow_old() -> None:
     for measurement in robot.drive(0.0, 0.0, 0.3):
         if isinstance(measurement, PointCloud):
             measurement = dataclasses.replace(measurement, times_s=measurement.times_s[:-1])
-        lookout.hear(measurement, Twist2())
+        lookout.hear(measurement, lambda _: Twist2())
     assert lookout.scan is before

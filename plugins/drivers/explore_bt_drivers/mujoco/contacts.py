@@ -8,11 +8,12 @@ import mujoco
 import numpy as np
 
 from explore_bt_drivers.mujoco.body import Joints
+from explore_bt_drivers.mujoco.figures import STEP_M
 
 __all__ = ["Contacts"]
 
 _LEVEL = 0.6
-"""Where the z of a contact's normal is larger, a wheel rolls on what it touches: floor, sill, ramp."""
+"""Where the z of a contact's normal is larger, a wheel rolls on what it touches."""
 _MOVING_MPS = 0.05
 _PERSON = re.compile(r"person (\d+)")
 _THINGS = -1
@@ -40,6 +41,8 @@ class Contacts:
         self._is_robot = np.asarray(root == base)
         self._is_wheel = np.isin(model.geom_bodyid, [model.body(name).id for name in Joints.WHEELS])
         self._floor = model.geom("floor").id
+        tops = model.geom_pos[:, 2] + model.geom_aabb[:, 2] + model.geom_aabb[:, 5]
+        self._is_low = (model.geom_bodyid == 0) & (tops <= STEP_M)  # sills and low ramps, upright as drawn
         names = [model.body(int(body)).name for body in model.geom_bodyid]
         people = [_PERSON.fullmatch(name) for name in names]
         self._owner = np.array([int(found[1]) if found else _THINGS for found in people])
@@ -82,7 +85,8 @@ class Contacts:
         own = self._is_robot[geoms]
         others = np.where(own[:, 0], geoms[:, 1], geoms[:, 0])
         selves = np.where(own[:, 0], geoms[:, 0], geoms[:, 1])
-        rolls = self._is_wheel[selves] & (np.abs(data.contact.frame[:, 2]) > _LEVEL)
+        steep = np.abs(data.contact.frame[:, 2]) > _LEVEL
+        rolls = self._is_wheel[selves] & (steep | self._is_low[others])
         counts = (own.sum(axis=1) == 1) & ~rolls & (others != self._floor)
         near: dict[int, tuple[float, tuple[float, float, float]]] = {}
         for k in np.flatnonzero(counts):

@@ -26,6 +26,10 @@ _FARTHEST_M = 0.15
 _TURN_RATE_GAIN, _TURN_GAIN = 25.0, 60.0
 """1/s and 1/s² of the angular acceleration asked for."""
 _FARTHEST_RAD = 0.1
+_GRIP_MPS2 = 10.0
+"""No tyre makes the robot faster than that; wheels that say so spin."""
+_SPIN_MPS, _GRIPPING_NM = 0.1, 2.0
+"""Wheels that are so much faster than the robot can be get this torque at most, until they hold again."""
 
 
 class Balance:
@@ -42,11 +46,14 @@ class Balance:
 
     def forget(self) -> None:
         """Begin anew, from wherever the body is."""
-        self._behind_m = self._unturned_rad = 0.0
+        self._behind_m = self._unturned_rad = self._speed_mps = 0.0
 
     def torques(self, felt: Felt, wish: Wish) -> tuple[float, float]:
         """Torques of the left and the right motor, N·m, for the coming period."""
-        speed, pitch, pitch_rate, turn_rate = felt
+        rolled, pitch, pitch_rate, turn_rate = felt
+        self._speed_mps += _cut(rolled - self._speed_mps, _GRIP_MPS2 * CONTROL_S)
+        speed = self._speed_mps
+        limit = TORQUE_NM if abs(rolled - speed) < _SPIN_MPS else _GRIPPING_NM
         behind, turned = wish.speed_mps - speed, wish.turn_rps - turn_rate
         self._behind_m = _cut(self._behind_m + behind * CONTROL_S, _FARTHEST_M)
         self._unturned_rad = _cut(self._unturned_rad + turned * CONTROL_S, _FARTHEST_RAD)
@@ -56,8 +63,8 @@ class Balance:
         both += by_rate * (wish.pitch_rate_rps - pitch_rate)
         turning = wish.turn_slope_rps2 + _TURN_RATE_GAIN * turned + _TURN_GAIN * self._unturned_rad
         # balance comes first: what the motors have left is for turning
-        half = _cut(0.5 * both, TORQUE_NM)
-        aside = _cut(0.5 * self._turn_torque * turning, max(TORQUE_NM - abs(half), 0.2 * TORQUE_NM))
+        half = _cut(0.5 * both, limit)
+        aside = _cut(0.5 * self._turn_torque * turning, max(limit - abs(half), 0.2 * limit))
         return half - aside, half + aside
 
 

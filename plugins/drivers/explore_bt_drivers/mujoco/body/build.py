@@ -12,8 +12,8 @@ from explore_bt_drivers.mujoco.scene.groups import GeomGroup
 
 __all__ = ["TORQUE_NM", "Joints", "add_robot"]
 
-TORQUE_NM = 5.0
-"""The most that a motor gives; with 9 a wheel that was pushed aside spun, and the body fell."""
+TORQUE_NM = 9.0
+"""The most that a motor gives: onto a sill of 2 cm takes 6.3 of each."""
 
 _WHEEL_WIDTH_M, _WHEEL_KG = 0.025, 1.25
 _CHASSIS_KG, _MAST_KG, _LIDAR_KG, _CAMERA_KG = 16.2, 2.1, 0.85, 0.35
