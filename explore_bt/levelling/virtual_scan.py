@@ -15,7 +15,14 @@ _BINS = 720
 
 
 def virtual_scan(
-    cloud: LevelCloud, low_m: float, high_m: float, range_max_m: float, rise: float = 0.0
+    cloud: LevelCloud,
+    low_m: float,
+    high_m: float,
+    range_max_m: float,
+    *,
+    rise: float = 0.0,
+    surface_m: float = 0.0,
+    bins: int = _BINS,
 ) -> Scan2D:
     """In each of 720 directions the nearest return between two heights above the floor.
 
@@ -29,8 +36,13 @@ def virtual_scan(
         high_m: the higher one.
         range_max_m: of the lidar.
         rise: by so much for every metre away the lower height is higher, metres.
+        surface_m: returns so little farther than the nearest are of the same surface, and their mean counts:
+            the nearest of many noisy ones is always too near.
+        bins: how many directions.
     """
-    angles, ranges, times = _nearest(cloud.own, cloud.times_s, low_m, high_m, rise, _BINS)
+    angles, ranges, times = _nearest(cloud.own, cloud.times_s, low_m, high_m, rise, bins)
+    if surface_m > 0.0:
+        ranges = _averaged(cloud.own, ranges, low_m, high_m, rise, surface_m)
     return Scan2D(cloud.stamp_s, angles, ranges, times, 0.0, range_max_m, "base_link")
 
 
@@ -57,3 +69,26 @@ def _nearest(
             ranges[k] = np.inf
             times[k] = stamps[i]
     return angles, ranges, times
+
+
+@njit(cache=True)
+def _averaged(
+    points: Singles, nearest: Singles, low: float, high: float, rise: float, surface: float
+) -> Singles:
+    """The mean of the returns in each direction that are of the nearest one's surface."""
+    bins = nearest.shape[0]
+    sums, counts = np.zeros(bins), np.zeros(bins)
+    width = 2.0 * np.pi / bins
+    for i in range(points.shape[0]):
+        x, y, z = np.float64(points[i, 0]), np.float64(points[i, 1]), np.float64(points[i, 2])
+        away = np.hypot(x, y)
+        if low + rise * away <= z <= high:
+            k = min(int((np.arctan2(y, x) + np.pi) / width), bins - 1)
+            if away <= nearest[k] + surface:
+                sums[k] += away
+                counts[k] += 1.0
+    means = nearest.copy()
+    for k in range(bins):
+        if counts[k] > 0.0:
+            means[k] = np.float32(sums[k] / counts[k])
+    return means

@@ -87,3 +87,13 @@ def test_a_sweep_that_cannot_be_read_leaves_the_scan_to_grow_old() -> None:
             measurement = dataclasses.replace(measurement, times_s=measurement.times_s[:-1])
         lookout.hear(measurement, lambda _: Twist2())
     assert lookout.scan is before
+
+
+def test_a_wall_that_many_returns_are_of_is_not_seen_too_near() -> None:
+    """0.7 m away each direction has a dozen returns of 2 cm noise: the nearest of them is 3 cm too near."""
+    lookout, _ = look(room(box(0.7, -1.0, 0.8, 1.0)))
+    assert lookout.scan is not None
+    ahead = np.abs(lookout.scan.angles_rad) < 0.4
+    away = lookout.scan.ranges_m[ahead] * np.cos(lookout.scan.angles_rad[ahead])
+    assert float(np.mean(away)) == pytest.approx(0.7, abs=0.006)
+    assert float(np.std(away)) < 0.012
