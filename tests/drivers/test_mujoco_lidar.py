@@ -10,6 +10,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 pytest.importorskip("mujoco")
 
 from explore_bt_drivers.mujoco.lidar import VelodyneLike  # after the skip
+from explore_bt_drivers.mujoco.lidar.caster import best_caster
 from explore_bt_drivers.mujoco.lidar.embree import EmbreeCaster
 from explore_bt_drivers.mujoco.lidar.multi_ray import MultiRayCaster
 from explore_bt_drivers.mujoco.options import MujocoOptions
@@ -221,3 +222,10 @@ def test_the_same_seed_gives_the_same_sweeps_however_they_are_asked_for(tmp_path
     assert [cloud.stamp_s for cloud in cut] == [cloud.stamp_s for cloud in whole]
     for one, other in zip(whole, cut, strict=True):
         assert np.array_equal(one.points, other.points, equal_nan=True)
+
+
+def test_without_embree_mujoco_casts_the_rays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    parts = [scene_of(tmp_path, HALL).fixed]
+    assert isinstance(best_caster(parts), EmbreeCaster)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert isinstance(best_caster(parts), MultiRayCaster)

@@ -20,6 +20,8 @@ from explore_bt_slam.voxel_mapper import VoxelMapper
 __all__ = ["CloudPipeline"]
 
 _SPEED_SIGMA_MPS = 0.1
+_SEEN_FOR_S = 1.5
+"""So long is a speed that the camera has seen good for telling tilt from acceleration."""
 _SURE_M = 0.05
 _KNOWN_OVERLAP = 0.8
 _SAME_PLACE = 0.6
@@ -71,7 +73,8 @@ class CloudPipeline(Pipeline):
         self._cloud = levelled
         self.take_scan(virtual_scan(levelled, options.match_low, options.match_high, options.max_range))
         self._cloud = None
-        if self.health.state[0] is Health.OK:
+        is_seen = cloud.stamp_s - self.seen_s <= _SEEN_FOR_S
+        if self.health.state[0] is Health.OK or is_seen:
             self._attitude.correct(self.front.velocity_mps, _SPEED_SIGMA_MPS)
         else:
             self._attitude.correct(np.zeros(2), self._speed_limit_mps)
@@ -104,6 +107,8 @@ class CloudPipeline(Pipeline):
         elif old != self._keyframe:
             self._relative = self.back.pose(old).between(self._scan_pose)
             self._keyframe = old
+            if self.camera is not None:
+                self.camera.forget()  # what it has seen belongs to the keyframe before
             self.front.relocate(*self.back.surroundings(old))
 
     def _stands_here(self, registered: Registered) -> int | None:

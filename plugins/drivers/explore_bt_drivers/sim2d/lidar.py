@@ -97,12 +97,17 @@ def _cast_sweep(index, ways, states, first_step, stamp, times, angles, limit, ou
         (N,) bool: the beams that end at a person.
     """
     shown = np.zeros(angles.shape[0], dtype=np.bool_)
+    alone = ways.radii.shape[0] == 0
     for i in range(angles.shape[0]):
         row, share = place_at(stamp + times[i], first_step, states.shape[0])
         x, y = value_at(states, row, share, X), value_at(states, row, share, Y)
         direction = value_at(states, row, share, YAW) + angles[i]
         dx, dy = math.cos(direction), math.sin(direction)
-        out[i], shown[i] = _beam(index, ways, stamp + times[i], x, y, dx, dy, limit)
+        wall, last = first_hit(index, x, y, dx, dy, limit)
+        if alone and (last < 0 or index.materials[last] != MIRROR):
+            out[i] = wall
+        else:
+            out[i], shown[i] = _beam(index, ways, stamp + times[i], x, y, dx, dy, limit)
     return shown
 
 
