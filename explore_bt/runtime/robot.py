@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
@@ -212,7 +213,8 @@ class Robot:
                 self.footprint_radius_m,
                 straight_m,
             )
-            return centred(path, self._seen_points(), grid, self.footprint_radius_m)
+            seen = np.empty((0, 2)) if (scan := self.scan()) is None else self._seen_points(scan)
+            return centred(path, seen, grid, self.footprint_radius_m)
         except (PlanningFailure, UserError):
             raise
         except Exception as error:
@@ -374,10 +376,15 @@ class Robot:
         self._scan_pose, self._scan_twist = estimate.T_map_base, twist
         if self.pilot.has_jumped(estimate):
             self._people.forget()
-        points = np.ascontiguousarray(estimate.T_map_base.apply(steadied(scan).points()))
-        around = self._people.around(scan, estimate.T_map_base, twist, points, self.slam.grid())
+        points, grid = self._seen_points(scan), self.slam.grid()
+        around = self._people.around(scan, estimate.T_map_base, twist, points, grid)
         self.moving = around.moving
         self.pilot.see(around, estimate)
+
+    def _seen_points(self, scan: Scan2D) -> NDArray[np.float64]:
+        """(N, 2) metres, ``map`` frame: a scan's returns, less noisy close by."""
+        pose = self._estimate_of_scan(scan).T_map_base
+        return np.ascontiguousarray(pose.apply(steadied(scan).points()))
 
     def _estimate_of_scan(self, scan: Scan2D) -> Estimate:
         """The newest, carried forward to the scan where SLAM lags behind."""
