@@ -1,9 +1,10 @@
 # Needs python3 (3.11 or newer), pip and make; everything else goes into .venv.
 PYTHON ?= python3
 BIN := .venv/bin
+ROS := .venv-ros
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq
 
-.PHONY: demo replay test lint types docs bench clean
+.PHONY: demo replay test test-ros2 lint types docs bench clean
 
 demo: .venv/run.done       ## explore a flat nobody has told the robot about
 	@$(BIN)/explore-bt run missions/01_apartment.yaml
@@ -11,8 +12,12 @@ demo: .venv/run.done       ## explore a flat nobody has told the robot about
 replay: .venv/run.done     ## any moment of the newest run, in a browser
 	@$(BIN)/explore-bt replay --open
 
-test: .venv/dev.done       ## every test, lint and type check included
-	@$(BIN)/python -m pytest -n 2
+test: .venv/dev.done $(ROS)/dev.done  ## every test, lint and type check included
+	@$(ROS)/bin/python -m pytest -n 2 tests/ros2
+	@$(BIN)/python -m pytest -n 2 --ignore tests/ros2
+
+test-ros2: $(ROS)/dev.done  ## those against a real ROS 2, which has an environment of its own
+	@$(ROS)/bin/python -m pytest -n 2 tests/ros2
 
 lint: .venv/dev.done       ## style
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/lint-imports --no-cache
@@ -27,12 +32,12 @@ bench: .venv/dev.done      ## the tables of docs/benchmarks.md (the whole takes 
 	@$(BIN)/python benchmarks/sim2d.py && $(BIN)/python benchmarks/apartment.py && $(BIN)/python benchmarks/floorplans.py && $(BIN)/python benchmarks/slam.py
 
 clean:                     ## forget the environment and what was built
-	rm -rf .venv dist build
+	rm -rf .venv $(ROS) dist build
 
 # Debian's python3 comes without ensurepip: pip then installs itself from outside.
-.venv/bin/python:
-	@$(PYTHON) -m venv .venv 2>/dev/null || { rm -rf .venv; $(PYTHON) -m venv --without-pip .venv \
-	  && $(PYTHON) -m pip --python .venv/bin/python install -qq pip; }
+.venv/bin/python $(ROS)/bin/python: %/bin/python:
+	@$(PYTHON) -m venv $* 2>/dev/null || { rm -rf $*; $(PYTHON) -m venv --without-pip $* \
+	  && $(PYTHON) -m pip --python $*/bin/python install -qq pip; }
 
 .venv/run.done: pyproject.toml | .venv/bin/python
 	@echo "installing explore-bt and its libraries into .venv: about a minute"
@@ -41,3 +46,7 @@ clean:                     ## forget the environment and what was built
 .venv/dev.done: pyproject.toml | .venv/bin/python
 	@echo "installing explore-bt, its libraries and its tools into .venv: about a minute"
 	@$(PIP) install --editable '.[dev]' && touch $@ .venv/run.done
+
+$(ROS)/dev.done: pyproject.toml | $(ROS)/bin/python
+	@echo "installing explore-bt and ROS 2 into $(ROS): about a minute"
+	@$(ROS)/bin/python -m pip --disable-pip-version-check -qq install --editable '.[ros2,ros2-dev]' && touch $@

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from explore_bt_drivers.sim2d.truth import SPARE_M
-from explore_bt_drivers.world import World, load_world, observable_floor
+from explore_bt_drivers.world import SPARE_M, World, load_world, observable_floor
 from explore_bt_drivers.world.observable import reachable_cells
 from explore_bt_planners.feature_transform import feature_transform
 from explore_bt_planners.medial_axis import medial_axis

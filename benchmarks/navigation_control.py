@@ -93,7 +93,7 @@ def _drive(kind: type[Controller], world: Path, floor: OccupancyGrid, path: Way)
     assert truth is not None
     controller = kind(kind.Options())
     controller.setup(RobotContext(footprint_radius_m=RADIUS_M, limits=limits))
-    pilot = Pilot(controller, SafetyGate(RADIUS_M, limits), driver)
+    pilot = Pilot(controller, SafetyGate(RADIUS_M, limits), driver, limits)
     drive, scan, estimate = _Drive(), None, Estimate(0.0, begin)
     pilot.follow(path)
     until_s = path.length_m / _SLOWEST_MPS + 10.0

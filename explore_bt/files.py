@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["missions_folder", "sync_files", "write_whole"]
+__all__ = ["RECORDING", "missions_folder", "sync", "sync_files", "whole_file", "write_whole"]
+
+RECORDING = "recording.mcap"
+"""What a run calls its recording."""
 
 
 def missions_folder() -> Path:
@@ -15,15 +20,42 @@ def missions_folder() -> Path:
     return package / "missions" if (package / "missions").is_dir() else package.parent / "missions"
 
 
+def sync(path: Path) -> None:
+    """Have what was written to a file, or the names in a folder, on the disk: a power cut spares it then."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
 def sync_files(folder: Path) -> None:
-    """Have all that was written to the files right in a folder on the disk, so that a power cut spares it."""
+    """Have all that was written to the files right in a folder on the disk."""
     for path in folder.iterdir():
         if path.is_file():
-            handle = os.open(path, os.O_RDONLY)
-            try:
-                os.fsync(handle)
-            finally:
-                os.close(handle)
+            sync(path)
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A file to write to that takes the name ``path`` when the block ends, and is gone if it breaks off.
+
+    No reader, and no crash, ever meets half of it. It has the suffix of ``path``.
+
+    Raises:
+        OSError: the folder cannot be written.
+    """
+    handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        sync(temporary)
+        temporary.chmod(0o644)
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
 
 
 def write_whole(path: Path, data: bytes | str) -> Path:
@@ -32,16 +64,6 @@ def write_whole(path: Path, data: bytes | str) -> Path:
     Raises:
         OSError: the folder cannot be written; nothing is left behind then.
     """
-    content = data.encode() if isinstance(data, str) else data
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    with whole_file(path) as temporary:
+        temporary.write_bytes(data.encode() if isinstance(data, str) else data)
     return path

@@ -14,6 +14,7 @@ from explore_bt.behaviours.leave_pocket import LeavePocket
 from explore_bt.behaviours.make_way import MakeWay
 from explore_bt.behaviours.record_waypoint import RecordWaypoint
 from explore_bt.behaviours.reset_half_planes import ResetHalfPlanes
+from explore_bt.behaviours.stand_up import StandUp
 from explore_bt.behaviours.stop_requested import StopRequested
 from explore_bt.behaviours.take_back import TakeBack
 from explore_bt.behaviours.turn import Turn
@@ -39,6 +40,7 @@ __all__ = [
     "MakeWay",
     "RecordWaypoint",
     "ResetHalfPlanes",
+    "StandUp",
     "StopRequested",
     "TakeBack",
     "Turn",
@@ -63,6 +65,7 @@ LEAVES = (
     MakeWay,
     RecordWaypoint,
     ResetHalfPlanes,
+    StandUp,
     StopRequested,
     TakeBack,
     Turn,

@@ -103,6 +103,8 @@ class DriveTo(Leaf):
             return Status.SUCCESS
         if output.status is ControlStatus.STUCK or self.robot.pilot.blocked_s > self.patience:
             if someone_is_in_the_way(self.robot):
+                if output.status is ControlStatus.STUCK:
+                    self.robot.pilot.follow(self._path)  # they go on, and so may it at any moment
                 return self._wait_for_someone(self.robot.pilot.blocked_s)
             return self._plan_after_hold(output.reason)
         if self._is_cut():

@@ -5,7 +5,6 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import json
-import os
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -13,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from explore_bt.errors import UserError
+from explore_bt.files import sync
 
 __all__ = ["Checkpoint", "CheckpointError", "CheckpointStore", "Draft"]
 
@@ -76,11 +76,11 @@ class Draft:
         manifest.write_text(json.dumps({"format": FORMAT, "files": sums}, separators=(",", ":")))
         _synced_sum(manifest)
         for folder in (self.folder, *(each for each in self.folder.rglob("*") if each.is_dir())):
-            _sync_folder(folder)
+            sync(folder)
         final = self._store.folder / f"{self.tick:09d}"
         shutil.rmtree(final, ignore_errors=True)
         self.folder.rename(final)
-        _sync_folder(self._store.folder)
+        sync(self._store.folder)
         self._store.prune()
         return Checkpoint(final, self.tick)
 
@@ -192,14 +192,5 @@ def _sum(data: bytes) -> str:
 
 def _synced_sum(file: Path) -> str:
     """The checksum of a file that is on the disk by then."""
-    with file.open("rb") as opened:
-        os.fsync(opened.fileno())
-        return _sum(opened.read())
-
-
-def _sync_folder(folder: Path) -> None:
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    sync(file)
+    return _sum(file.read_bytes())

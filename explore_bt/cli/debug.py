@@ -38,7 +38,7 @@ from explore_bt.cli.page_options import (
 )
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
-from explore_bt.cli.sinks import ALWAYS, make_sinks
+from explore_bt.cli.sinks import make_sinks
 from explore_bt.cli.stopping import stopping_by_signal
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def debug(
     folder = new_run_folder(out, checked.path.stem)
     session = new_session(checked, registry, set_ or (), mock, paused=not run_on)
     sinks = [
-        *make_sinks(registry, [*ALWAYS, *(sink or ())]),
+        *make_sinks(registry, sink or ()),
         *groot_sinks(groot, checked, session, groot_host, groot_port),
     ]
     with run_log(folder / "run.log", verbose=verbose):

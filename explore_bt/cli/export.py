@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from explore_bt.cli.btlog import BtlogOption, require_btlog, write_btlogs
+from explore_bt.cli.filming import require_mp4
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.human import count, duration
+from explore_bt.cli.places import require_new_folder
 from explore_bt.cli.recordings import open_recording
 from explore_bt.errors import UserError
 
@@ -69,13 +71,11 @@ def _require(csv: Path | None, parquet: Path | None, video: Path | None) -> None
 
     if parquet is not None:
         require_parquet()
-    for folder in (csv, parquet):
+    for folder, option in ((csv, "--csv"), (parquet, "--parquet")):
         if folder is not None:
-            _require_new_folder(folder)
-    if video is not None and video.suffix.lower() != ".mp4":
-        raise UserError(f"{video}: videos are MP4 files; write {video.with_suffix('.mp4')}")
-    if video is not None and video.exists():
-        raise UserError(f"{video} is there already; name another file")
+            require_new_folder(folder, option)
+    if video is not None:
+        require_mp4(video)
 
 
 def _export_tables(recording: Recording, csv: Path | None, parquet: Path | None) -> None:
@@ -110,8 +110,3 @@ def _export_video(recording: Recording, path: Path, rate_hz: float, speed: float
             on_frame=lambda done, total: progress.update(task, completed=done, total=total),
         )
     typer.echo(f"{path}  {duration(recording.duration_s)} at {speed:g} ×")
-
-
-def _require_new_folder(folder: Path) -> None:
-    if folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
-        raise UserError(f"{folder} is {'a file' if folder.is_file() else 'not empty'}; name a new folder")

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MissionArgument", "MockOption", "SetOption", "load_checked"]
 
+_EXTRA = 'pip install "explore-bt['
+
 MissionArgument = Annotated[
     str, typer.Argument(metavar="MISSION", help="A mission file, or the name of a shipped mission.")
 ]
@@ -54,7 +56,13 @@ def load_checked(
 
 
 def _left_out(faulty: MissionError, host: Host) -> str:
-    """Where a plugin is missing, those that could not be loaded may be the reason."""
-    if not any("explore-bt plugins" in fault.hint for fault in faulty.faults):
+    """Where a plugin is missing, those that could not be loaded may be the reason.
+
+    One that only lacks its extra is no reason where a name was mistyped.
+    """
+    missing = [fault.hint for fault in faulty.faults if "explore-bt plugins" in fault.hint]
+    if not missing:
         return ""
-    return "".join(f"\nleft out: {each.name}, {each.origin}: {each.reason}" for each in host.broken)
+    mistyped = all("did you mean" in hint for hint in missing)
+    reasons = [each for each in host.broken if not (mistyped and _EXTRA in each.reason)]
+    return "".join(f"\nleft out: {each.name}, {each.origin}: {each.reason}" for each in reasons)

@@ -10,7 +10,7 @@ from pathlib import Path
 from explore_bt.errors import UserError
 from explore_bt.files import missions_folder
 
-__all__ = ["find_mission", "new_run_folder", "shipped_missions"]
+__all__ = ["find_mission", "new_run_folder", "require_new_folder", "shipped_missions"]
 
 
 def shipped_missions() -> dict[str, Path]:
@@ -50,18 +50,27 @@ def new_run_folder(out: Path | None, mission: str) -> Path:
         UserError: it holds something (runs are never mixed or overwritten), or cannot be made.
     """
     folder = out or _free(Path("runs") / f"{mission}-{datetime.now():%Y%m%d-%H%M%S}")
+    require_new_folder(folder, "--out")
+    return folder
+
+
+def require_new_folder(folder: Path, option: str) -> None:
+    """Find out, before anything is written, whether a folder of this name can be made and filled.
+
+    Raises:
+        UserError: it holds something, or may not be made; names the option that gives another.
+    """
     if folder.is_file():
-        raise UserError(f"{folder} is a file; name a new folder with --out")
+        raise UserError(f"{folder} is a file; name a new folder with {option}")
     if folder.is_dir() and any(folder.iterdir()):
         raise UserError(
-            f"{folder} is not empty; a run never overwrites another, name a new folder with --out"
+            f"{folder} is not empty; nothing is ever overwritten, name a new folder with {option}"
         )
     above = next(each for each in (folder, *folder.absolute().parents) if each.exists())
     if not above.is_dir():
-        raise UserError(f"{folder} cannot be made: {above} is a file; name another folder with --out")
+        raise UserError(f"{folder} cannot be made: {above} is a file; name another folder with {option}")
     if not os.access(above, os.W_OK | os.X_OK):
-        raise UserError(f"{folder}: you may not write into {above}; name another folder with --out")
-    return folder
+        raise UserError(f"{folder}: you may not write into {above}; name another folder with {option}")
 
 
 def _free(folder: Path) -> Path:

@@ -17,9 +17,9 @@ from explore_bt.cli.page_options import (
     show_page,
     wait_for_ctrl_c,
 )
-from explore_bt.errors import UserError
+from explore_bt.cli.recordings import open_recording
 
-__all__ = ["find_recording", "replay"]
+__all__ = ["replay"]
 
 
 @guarded
@@ -41,32 +41,11 @@ def replay(
     Ctrl-C ends it.
     """
     from explore_bt.debug.web import Desk, PageServer, RunFeed
-    from explore_bt.recording import read_recording
 
-    recording = read_recording(find_recording(run))
+    recording = open_recording(run)
     if recording.damage:
         typer.echo(f"{recording.path}: {recording.damage}")
     with PageServer(Desk(RunFeed.of(recording)), host=host, port=port, token=token) as server:
         typer.echo(f"{recording.path}: {duration(recording.duration_s)} of mission time")
         show_page(server, open_it=open_)
         wait_for_ctrl_c("Ctrl-C ends it")
-
-
-def find_recording(run: Path | None) -> Path:
-    """The recording that a person means: the file itself, or the one in a run's folder, or the newest.
-
-    Raises:
-        UserError: it is not there.
-    """
-    if run is None:
-        every = sorted(Path("runs").glob("*/recording.mcap"), key=lambda path: path.stat().st_mtime)
-        if not every:
-            raise UserError(
-                "there is no recording in runs/ yet; name the folder of a run, or its recording.mcap"
-            )
-        return every[-1]
-    path = run / "recording.mcap" if run.is_dir() else run
-    if not path.is_file():
-        where = f"{run} holds no recording.mcap" if run.is_dir() else f"there is no {run}"
-        raise UserError(f"{where}; name the folder of a run, or its recording.mcap")
-    return path

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -19,7 +18,7 @@ from explore_bt.cli.driving import (
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.human import duration
 from explore_bt.cli.run_log import run_log
-from explore_bt.cli.sinks import ALWAYS, make_sinks
+from explore_bt.cli.sinks import watched_sinks
 from explore_bt.cli.stopping import stopping_by_signal
 
 __all__ = ["resume"]
@@ -52,8 +51,7 @@ def resume(
         typer.echo(f"note       {note}")
     cut, seed = broken.run, broken.run.memory.origin.seed
     typer.echo(f"{run}: goes on at {duration(cut.stamp_s)}, part {cut.memory.parts + 1}: getting ready")
-    live = "terminal" if not headless and sys.stdout.isatty() else "progress"
-    sinks = make_sinks(broken.registry, [*ALWAYS, live, *(sink or ())])
+    sinks = watched_sinks(broken.registry, sink or (), headless=headless)
     from explore_bt.runtime import StopFlag
 
     stop = StopFlag()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 import typer
@@ -18,12 +17,13 @@ from explore_bt.cli.driving import (
     exit_code,
     show_result,
 )
+from explore_bt.cli.filming import VideoOption, film_of
 from explore_bt.cli.groot import GrootHostOption, GrootOption, GrootPortOption, groot_sinks
 from explore_bt.cli.guard import guarded
 from explore_bt.cli.loading import MissionArgument, MockOption, SetOption, load_checked
 from explore_bt.cli.places import new_run_folder
 from explore_bt.cli.run_log import run_log
-from explore_bt.cli.sinks import ALWAYS, make_sinks
+from explore_bt.cli.sinks import watched_sinks
 from explore_bt.cli.stopping import stopping_by_signal
 
 __all__ = ["run"]
@@ -40,6 +40,7 @@ def run(
     groot: GrootOption = False,
     groot_port: GrootPortOption = 1667,
     groot_host: GrootHostOption = "127.0.0.1",
+    video: VideoOption = None,
     mock: MockOption = None,
     robot: Annotated[
         str | None,
@@ -60,21 +61,24 @@ def run(
         from explore_bt.mission import only_robot
 
         checked = only_robot(checked, robot)
+    attendants = film_of(checked, video)
     folder = new_run_folder(out, checked.path.stem)
-    live = "terminal" if not headless and sys.stdout.isatty() else "progress"
-    sinks = make_sinks(registry, [*ALWAYS, live, *(sink or ())])
-    session = None
+    sinks = watched_sinks(registry, sink or (), headless=headless)
     if groot:
         from explore_bt.debug import DebugSession
 
         session = DebugSession()
+        attendants.append(session)
         sinks += groot_sinks(groot, checked, session, groot_host, groot_port)
     typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
-    from explore_bt.runtime import Pace, StopFlag
+    from explore_bt.runtime import Attendants, Pace, StopFlag
 
-    attendant = session or (Pace(pace) if robot is not None else None)
+    if robot is not None:
+        attendants.append(Pace(pace))
     stop = StopFlag()
     with run_log(folder / "run.log", verbose=verbose), stopping_by_signal(stop):
-        result = drive(checked, registry, folder, seed, sinks, stop, attendant)
+        result = drive(checked, registry, folder, seed, sinks, stop, Attendants(attendants))
     show_result(result, folder)
+    if video is not None and video.exists():
+        typer.echo(f"video      {video}")
     raise typer.Exit(exit_code(result.outcome))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from explore_bt.cli.human import count, duration, percent
+from explore_bt.files import RECORDING
 
 if TYPE_CHECKING:
     from explore_bt.types import Result
@@ -14,8 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["summary_lines"]
 
 _MOST = 3
-_RECORDING = "recording.mcap"
-_FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", _RECORDING), ("log", "run.log"))
+_FILES = (("map", "map.yaml"), ("report", "report.html"), ("recording", RECORDING), ("log", "run.log"))
 
 
 def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:
@@ -27,7 +27,7 @@ def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:
     lines += [("left open", sentence) for sentence in _first(result.left_open)]
     lines += [(label, str(path)) for label, name in _FILES for path in _files(folder, name)]
     lines += (
-        [("replay", f"explore-bt replay {shlex.quote(str(folder))}")] if _files(folder, _RECORDING) else []
+        [("replay", f"explore-bt replay {shlex.quote(str(folder))}")] if _files(folder, RECORDING) else []
     )
     return lines
 

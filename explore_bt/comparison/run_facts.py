@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.errors import UserError
+from explore_bt.files import RECORDING
 from explore_bt.maps import read_map
-from explore_bt.recording import RECORDING, Recording, RecordingError, read_recording
+from explore_bt.recording import Recording, RecordingError, read_recording
 from explore_bt.recovery import recorded_map, recorded_result, recorded_way
 from explore_bt.report import cropped, overlaid
 from explore_bt.types import OccupancyGrid

@@ -62,14 +62,14 @@ def find_refuge(
         enough_m: beyond the footprint; a larger gap is not worth a way.
     """
     row, col = grid.cell_of(*here_xy)
-    reach = math.ceil(most_way_m / grid.resolution_m)
-    row0, col0 = max(row - reach, 0), max(col - reach, 0)
-    window = np.ascontiguousarray(clearance_m[row0 : row + reach + 1, col0 : col + reach + 1])
-    way_m = Travel(window, radius_m, grid.resolution_m).field((row - row0, col - col0), most_way_m)
+    window = grid.window_around(*here_xy, most_way_m)
+    near_m = np.ascontiguousarray(clearance_m[window.slices])
+    here = (row - window.row0, col - window.col0)
+    way_m = Travel(near_m, radius_m, grid.resolution_m).field(here, most_way_m)
     cells = np.argwhere(way_m <= most_way_m)
     if not len(cells):
         return None
-    places, ways_m = grid.centers_of(cells + np.array([row0, col0])), way_m[tuple(cells.T)]
+    places, ways_m = grid.centers_of(cells + np.array([window.row0, window.col0])), way_m[tuple(cells.T)]
     is_refuge = np.ones(len(places), dtype=np.bool_)
     for thing in moving:
         is_refuge &= np.hypot(*(places - thing.xy).T) - thing.radius_m > ways_m

@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from explore_bt.export.table import Cell, Table
-from explore_bt.recording import RecordedMessage, Recording
+from explore_bt.recording import RecordedMessage, Recording, decode_event, decode_pose
 
 __all__ = ["TABLES", "read_tables"]
 
-_LEVELS = ("unknown", "debug", "info", "warning", "error")
 _WORDS = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}
 
 TABLES: Mapping[str, tuple[str, ...]] = {
@@ -110,23 +109,16 @@ class _Reader:
                     self._add("blackboard", stamp_s, robot, {"entry": name, "value": number})
 
     def _event(self, message: RecordedMessage) -> None:
-        value = message.value
-        robot, slash, source = value["name"].partition("/")
-        if not slash or robot not in self._trees:
-            robot, source = "", value["name"]
-        level = _LEVELS[min(value["level"], len(_LEVELS) - 1)]
-        row = {"level": level, "source": source, "message": value["message"]}
-        self._add("events", round(message.stamp_s, 9), robot, row)
+        event = decode_event(message.stamp_s, message.value, self._trees)
+        row = {"level": event.level, "source": event.source, "message": event.message}
+        self._add("events", round(message.stamp_s, 9), event.robot, row)
 
 
 def _pose(value: dict[str, Any]) -> dict[str, Cell]:
-    position, turn = value["pose"]["position"], value["pose"]["orientation"]
-    yaw_rad = 2.0 * math.atan2(turn["z"], turn["w"])
-    return {
-        "x_m": position["x"],
-        "y_m": position["y"],
-        "yaw_rad": round(math.remainder(yaw_rad, math.tau), 6),
-    }
+    pose = decode_pose(value["pose"])
+    if math.isnan(pose.x):
+        return {}
+    return {"x_m": pose.x, "y_m": pose.y, "yaw_rad": round(pose.yaw_rad, 6)}
 
 
 def _numbers(name: str, value: object) -> Iterator[tuple[str, float]]:

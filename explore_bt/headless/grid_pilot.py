@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import ControlOutput, ControlStatus, HeldBy
-from explore_bt.types import Path, Pose2, Twist2, wrap_angle
+from explore_bt.types import BodyFault, Path, Pose2, Twist2, wrap_angle
 
 __all__ = ["GridPilot"]
 
@@ -29,6 +29,12 @@ class GridPilot:
     blocked_s = 0.0
     gate_reason = ""
     held_by = HeldBy.OBSTACLE
+    body_fault: BodyFault | None = None
+
+    def recover_body(self) -> bool:
+        """The caller sees to that."""
+        return False
+
     in_the_way = ""
 
     def __init__(self) -> None:

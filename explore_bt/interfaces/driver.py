@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from typing import ClassVar
 
 from explore_bt.clock import Clock
+from explore_bt.interfaces.filming import Filming
+from explore_bt.interfaces.finding import Finding
 from explore_bt.interfaces.plugin import Plugin, RobotContext
+from explore_bt.interfaces.request import Request
+from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.truth import GroundTruth
-from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt.types import BodyFault, BodyShape, Measurement, MotionLimits, Pose2, Twist2
 
 __all__ = ["Driver"]
 
@@ -21,6 +26,8 @@ class Driver(Plugin):
     """
 
     kind = "driver"
+    films: ClassVar[bool] = False
+    """Whether ``filming`` gives pictures: asked before anything is set up."""
 
     @abstractmethod
     def setup(self, context: RobotContext) -> None:
@@ -43,6 +50,11 @@ class Driver(Plugin):
     @abstractmethod
     def footprint_radius_m(self) -> float:
         """Radius of the circular footprint about ``base_link``."""
+
+    @property
+    def shape(self) -> BodyShape:
+        """What else is to be known of the body, where the lidar is a 3D one."""
+        return BodyShape()
 
     @property
     @abstractmethod
@@ -71,6 +83,18 @@ class Driver(Plugin):
     def stop(self) -> None:
         """Halt as fast as is safe for the body. Idempotent, from any thread, never raises."""
 
+    @property
+    def fault(self) -> BodyFault | None:
+        """Why the body cannot drive now: it has fallen, its own emergency stop is pressed. Cheap.
+
+        Commands are not heard meanwhile, the stack above holds still.
+        """
+        return None
+
+    def recover(self) -> bool:
+        """Begin to get out of ``fault``, without waiting for it; False where the body cannot."""
+        return False
+
     @abstractmethod
     def close(self) -> None:
         """Stop and let go of everything. Idempotent."""
@@ -78,3 +102,35 @@ class Driver(Plugin):
     def truth(self) -> GroundTruth | None:
         """The truth, where the driver is a simulator."""
         return None
+
+    def filming(self, size: tuple[int, int]) -> Filming | None:  # noqa: ARG002  # most worlds have no looks
+        """Pictures of the simulated world, ``size`` being width and height in pixels; after ``setup``.
+
+        Raises:
+            UserError: what draws them is not installed.
+        """
+        return None
+
+    def hindrance(self) -> str:
+        """Why the robot must not drive now, in words: a silent topic, a pressed emergency stop; else empty.
+
+        Asked every control period, so cheap. While there is a reason the robot brakes, and stands.
+        """
+        return ""
+
+    def asked(self) -> Sequence[Request]:
+        """What people asked through the robot's own buttons or services since the last call."""
+        return ()
+
+    @property
+    def connection(self) -> object:
+        """What plugins of the same family share with the driver (``RobotContext.connection``)."""
+        return None
+
+    def observers(self) -> Sequence[Sink]:
+        """Sinks that this robot wants to look on, made after ``setup``."""
+        return ()
+
+    def survey(self, listen_s: float) -> Sequence[Finding]:  # noqa: ARG002  # those that can listen do
+        """What can be heard of the robot while it stands; called after ``setup``, may take ``listen_s``."""
+        return ()

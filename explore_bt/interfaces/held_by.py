@@ -15,4 +15,5 @@ class HeldBy(enum.StrEnum):
     SOMEONE = "someone who moves"
     MATE = "a team mate"
     SENSES = "senses that fail"
+    BODY = "a body that cannot drive"
     DEBUGGER = "the debugger"

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict
 
 from explore_bt.interfaces.commons import Commons
 from explore_bt.interfaces.truth import GroundTruth
-from explore_bt.types import MotionLimits, Pose2
+from explore_bt.types import BodyShape, MotionLimits, Pose2
 
 __all__ = ["API_VERSION", "Plugin", "PluginOptions", "Resumption", "RobotContext"]
 
@@ -73,8 +73,10 @@ class RobotContext:
         start: pose of ``base_link`` in ``map`` when the mission starts; None if nobody said so.
         footprint_radius_m: the robot's circular footprint.
         limits: the driver's limits, capped by the mission's.
+        shape: of the body, for who makes use of a 3D lidar.
         truth: the simulator's truth, None on hardware.
         resumed: where the run goes on, None for one that begins. ``start`` is still where the mission began.
+        connection: what the driver shares with plugins of its own family, None where it shares nothing.
         commons: what the robots of the mission share in this process.
     """
 
@@ -83,8 +85,10 @@ class RobotContext:
     start: Pose2 | None = None
     footprint_radius_m: float = 0.25
     limits: MotionLimits = MotionLimits()
+    shape: BodyShape = BodyShape()
     truth: GroundTruth | None = None
     resumed: Resumption | None = None
+    connection: object = None
     commons: Commons = field(default_factory=Commons, compare=False, repr=False)
 
     def rng(self, stream: str) -> np.random.Generator:

@@ -15,6 +15,7 @@ from explore_bt.interfaces.controller import ControlOutput
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.interfaces.team_services import TeamServices
 from explore_bt.types import (
+    BodyFault,
     Budget,
     Drawing,
     Estimate,
@@ -79,6 +80,13 @@ class Pilot(Protocol):
     @property
     def held_by(self) -> HeldBy:
         """What the robot is being braked for."""
+
+    @property
+    def body_fault(self) -> BodyFault | None:
+        """Why the body cannot drive now; None while it can."""
+
+    def recover_body(self) -> bool:
+        """Have the body begin to get out of its fault; False where it cannot."""
 
     @property
     def in_the_way(self) -> str:

@@ -15,8 +15,8 @@ __all__ = ["Slam"]
 class Slam(Plugin):
     """Where the robot is and what its surroundings look like.
 
-    All methods are called by one thread (the control thread in simulated time, a thread of its own in
-    wall time); what they return is immutable and may be read by others.
+    All methods are called by one thread, the control thread; what they return is immutable and may be read
+    by others.
     """
 
     kind = "slam"
@@ -94,10 +94,10 @@ class Slam(Plugin):
         return lambda: None
 
     def pick_up(self) -> None:
-        """A resumed run has given ``update`` all that was recorded; the robot stands still now.
+        """A resumed run has given ``update`` all that was recorded, or a fallen robot has been stood up.
 
-        It may stand half a metre from ``estimate()``, turned by as much as it had time for. The default
-        trusts ``update`` to find that out.
+        It stands still now. It may stand half a metre from ``estimate()``, turned by as much as it had time
+        for. The default trusts ``update`` to find that out.
         """
 
     @abstractmethod

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pydantic import Field
@@ -41,21 +41,31 @@ class LimitsSpec:
     time_s: float | None = None
     distance_m: float | None = None
     battery_reserve: float | None = None
+    braking_mps2: float | None = None
+    braking_jerk_mps3: float | None = None
 
     def apply(self, limits: MotionLimits) -> MotionLimits:
         """The body's limits, capped by the mission's."""
-
-        def capped(body: float, mission: float | None) -> float:
-            return body if mission is None else min(body, mission)
-
         return MotionLimits(
-            capped(limits.speed_mps, self.speed_mps),
-            capped(limits.acceleration_mps2, self.acceleration_mps2),
-            capped(limits.jerk_mps3, self.jerk_mps3),
-            capped(limits.turn_rate_rps, self.turn_rate_rps),
-            capped(limits.turn_acceleration_rps2, self.turn_acceleration_rps2),
-            capped(limits.turn_jerk_rps3, self.turn_jerk_rps3),
+            _capped(limits.speed_mps, self.speed_mps),
+            _capped(limits.acceleration_mps2, self.acceleration_mps2),
+            _capped(limits.jerk_mps3, self.jerk_mps3),
+            _capped(limits.turn_rate_rps, self.turn_rate_rps),
+            _capped(limits.turn_acceleration_rps2, self.turn_acceleration_rps2),
+            _capped(limits.turn_jerk_rps3, self.turn_jerk_rps3),
         )
+
+    def of_brake(self, limits: MotionLimits) -> MotionLimits:
+        """What the safety gate may brake with: as the robot drives, or harder where the mission says so."""
+        return replace(
+            self.apply(limits),
+            acceleration_mps2=_capped(limits.acceleration_mps2, self.braking_mps2 or self.acceleration_mps2),
+            jerk_mps3=_capped(limits.jerk_mps3, self.braking_jerk_mps3 or self.jerk_mps3),
+        )
+
+
+def _capped(body: float, mission: float | None) -> float:
+    return body if mission is None else min(body, mission)
 
 
 class LimitsModel(PluginOptions):
@@ -70,6 +80,10 @@ class LimitsModel(PluginOptions):
     time: Duration | None = Field(None, gt=0, description="mission time after which the mission ends")
     distance: Length | None = Field(None, gt=0, description="distance driven after which the mission ends")
     battery: Share | None = Field(None, ge=0, lt=1, description="charge that shall be left at home")
+    braking: Acceleration | None = Field(
+        None, gt=0, description="of the safety gate's brake; as acceleration by default"
+    )
+    braking_jerk: Jerk | None = Field(None, gt=0, description="of that brake; as jerk by default")
 
 
 class TickModel(PluginOptions):
@@ -94,6 +108,8 @@ def read_limits(entries: Entries, folder: Path, faults: Faults) -> LimitsSpec:
         model.time,
         model.distance,
         model.battery,
+        model.braking,
+        model.braking_jerk,
     )
 
 

@@ -9,6 +9,7 @@ from explore_bt.errors import PluginError
 from explore_bt.interfaces import (
     API_VERSION,
     Allocator,
+    Bridge,
     Controller,
     Driver,
     Exporter,
@@ -24,7 +25,7 @@ __all__ = ["CONTRACTS", "KINDS", "check_class", "kind_of", "name_of"]
 
 CONTRACTS: dict[str, type] = {
     contract.kind: contract
-    for contract in (Driver, Slam, Planner, Controller, Team, Allocator, Leaf, Sink, Exporter)
+    for contract in (Driver, Slam, Planner, Controller, Team, Allocator, Leaf, Sink, Exporter, Bridge)
 }
 """Kind -> the class to derive from."""
 

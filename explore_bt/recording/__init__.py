@@ -2,9 +2,8 @@
 
 from explore_bt.recording.btlog import STATUS_BYTES, btlog, transition_record
 from explore_bt.recording.chunk_writer import PERIOD_NS, ChunkWriter
-from explore_bt.recording.foxglove import decode_grid, log_message, stamp_ns
+from explore_bt.recording.foxglove import decode_event, decode_grid, decode_pose, log_message, stamp_ns
 from explore_bt.recording.mcap_sink import (
-    RECORDING,
     McapRecorder,
     McapRecorderOptions,
     periods_of,
@@ -25,7 +24,6 @@ from explore_bt.recording.values import to_json
 
 __all__ = [
     "PERIOD_NS",
-    "RECORDING",
     "ROBOT_TOPICS",
     "RUN_TOPICS",
     "SINKS",
@@ -50,8 +48,10 @@ __all__ = [
     "TreeStatistics",
     "TreeTally",
     "btlog",
+    "decode_event",
     "decode_grid",
     "decode_measurements",
+    "decode_pose",
     "followed_topics",
     "log_message",
     "periods_of",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import base64
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -17,10 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.interfaces import Event
-from explore_bt.types import OccupancyGrid, Path, Pose2, Scan2D
+from explore_bt.types import OccupancyGrid, Path, Pose2, Scan2D, wrap_angle
 
 __all__ = [
+    "decode_event",
     "decode_grid",
+    "decode_pose",
     "grid_message",
     "log_message",
     "path_message",
@@ -34,6 +36,7 @@ __all__ = [
 _POSE = '{"position":{"x":%.4f,"y":%.4f,"z":0},"orientation":{"x":0,"y":0,"z":%.5f,"w":%.5f}}'
 _NO_POSE = '{"position":{"x":null,"y":null,"z":null},"orientation":{"x":0,"y":0,"z":0,"w":1}}'
 _LEVELS = {"debug": 1, "info": 2, "warning": 3, "error": 4}
+_LEVEL_NAMES = {number: name for name, number in _LEVELS.items()}
 _INT8 = 2  # foxglove.NumericType
 _PATH_POSES = 80
 
@@ -63,6 +66,14 @@ def _pose(pose: Pose2) -> str:
         return _NO_POSE
     half = 0.5 * pose.yaw_rad
     return _POSE % (pose.x, pose.y, math.sin(half), math.cos(half))
+
+
+def decode_pose(value: Mapping[str, Any]) -> Pose2:
+    """The pose in a ``foxglove.Pose`` of ours; not finite where there was none."""
+    at, turn = value["position"], value["orientation"]
+    if at["x"] is None:
+        return Pose2(math.nan, math.nan, math.nan)
+    return Pose2(float(at["x"]), float(at["y"]), wrap_angle(2.0 * math.atan2(turn["z"], turn["w"])))
 
 
 def pose_message(time_ns: int, pose: Pose2, extra: str = "") -> str:
@@ -165,3 +176,17 @@ def log_message(time_ns: int, event: Event) -> str:
         f'{{"timestamp":{time_json(time_ns)},"level":{_LEVELS.get(event.level, 0)},'
         f'"message":{quote(event.message)},"name":{quote(name)},"file":"","line":0}}'
     )
+
+
+def decode_event(stamp_s: float, value: Mapping[str, Any], robots: Collection[str]) -> Event:
+    """The event in a ``foxglove.Log`` message of ours.
+
+    Args:
+        stamp_s: mission time of the message.
+        value: of the message.
+        robots: names of the mission's robots: what else stands before a slash is part of the source.
+    """
+    robot, _, source = value["name"].partition("/")
+    if robot not in robots or not source:
+        robot, source = "", value["name"]
+    return Event(stamp_s, robot, _LEVEL_NAMES.get(value["level"], "info"), source, value["message"])

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pydantic import Field
 
+from explore_bt.files import RECORDING
 from explore_bt.interfaces import API_VERSION, Event, PluginOptions, RunInfo, Sink, TickSnapshot
 from explore_bt.recording.chunk_writer import ChunkWriter
 from explore_bt.recording.foxglove import log_message, stamp_ns
@@ -20,15 +21,12 @@ from explore_bt.types import Result
 from explore_bt.units import Duration
 
 __all__ = [
-    "RECORDING",
     "McapRecorder",
     "McapRecorderOptions",
     "periods_of",
     "result_message",
     "run_message",
 ]
-
-RECORDING = "recording.mcap"
 
 _log = logging.getLogger("explore_bt")
 

@@ -115,6 +115,7 @@ def _cloud(cloud: PointCloud) -> dict[str, object]:
         "stamp": cloud.stamp_s,
         "frame": cloud.frame,
         "mounting": cloud.T_base_sensor.ravel().tolist(),
+        "range_max": _figure(cloud.range_max_m),
         "point_step_m": step_m,
         "points": _packed(steps),
         "times": _packed(cloud.times_s.astype("<f4")),

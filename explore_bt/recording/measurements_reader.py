@@ -103,7 +103,8 @@ def _cloud(value: Mapping[str, Any]) -> PointCloud:
     if len(times_s) != len(points):
         raise ValueError(f"{len(times_s)} times for {len(points)} points")
     mounting = np.array(value["mounting"], dtype=np.float64).reshape(4, 4)
-    return PointCloud(float(value["stamp"]), points, times_s, mounting, str(value["frame"]))
+    range_max_m = _figure(value.get("range_max"))  # recordings up to now do not say
+    return PointCloud(float(value["stamp"]), points, times_s, mounting, str(value["frame"]), range_max_m)
 
 
 def _series(value: Any) -> NDArray[np.float64]:

@@ -101,6 +101,13 @@ class Recording:
             if (wanted is None or name in wanted) and start_s <= stamp_s <= end_s:
                 yield RecordedMessage(name, stamp_s, json.loads(data))
 
+    def last(self, topic: str, start_s: float = 0.0) -> RecordedMessage | None:
+        """The last message of a topic; None where there is none since ``start_s``."""
+        newest = None
+        for newest in self.messages(topic, start_s):  # noqa: B007  # only the last one counts
+            pass
+        return newest
+
     def raw_messages(self) -> Iterator[tuple[str, int, bytes]]:
         """Topic, mission time in nanoseconds and bytes of every message, in file order."""
         return self._raw(0.0, float("inf"))

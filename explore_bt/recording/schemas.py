@@ -47,6 +47,7 @@ _CLOUD = _object(
     stamp=_NUMBER,
     frame=_TEXT,
     mounting=_array(_NUMBER),
+    range_max=_MAYBE,
     point_step_m=_NUMBER,
     points=_BYTES,
     times=_BYTES,

@@ -7,13 +7,14 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from explore_bt.recording.foxglove import decode_event, decode_pose
 from explore_bt.recording.message_log import LoggedMessage, MessageLog
+from explore_bt.types import Pose2
 
 __all__ = ["Timeline"]
 
 _AT_A_TIME = 2000
 _PARTS = ("tree", "pose", "state", "gate", "visited")
-_LEVELS = {1: "debug", 2: "info", 3: "warning", 4: "error"}
 _WORTH_ITS_WORDS = ("success", "failure")
 
 
@@ -34,6 +35,7 @@ class Timeline:
 
     def __init__(self, log: MessageLog, robots: tuple[str, ...]) -> None:
         self._log = log
+        self._robots = robots
         self._topics = ("/events", *(f"/{robot}/{part}" for robot in robots for part in _PARTS))
         self._count = 0
         self._nodes: dict[tuple[str, int], tuple[str, str]] = {}
@@ -57,7 +59,7 @@ class Timeline:
             case "tree":
                 self._take_nodes(robot, stamp_s, value)
             case "pose":
-                self._take_pose(robot, stamp_s, value["pose"])
+                self._take_pose(robot, stamp_s, decode_pose(value["pose"]))
             case "state":
                 self._take_figures(robot, stamp_s, value)
             case "gate":
@@ -66,10 +68,8 @@ class Timeline:
                 at = value["pose"]["position"]
                 self._add("visited", robot, stamp_s, value["index"], value["reason"], at["x"], at["y"])
             case _:
-                who, slash, source = value["name"].partition("/")
-                named = (who, source) if slash else ("", who)
-                level = _LEVELS.get(value["level"], "info")
-                self._add("event", named[0], stamp_s, level, named[1], value["message"])
+                event = decode_event(stamp_s, value, self._robots)
+                self._add("event", event.robot, stamp_s, event.level, event.source, event.message)
 
     def _take_nodes(self, robot: str, stamp_s: float, value: Mapping[str, Any]) -> None:
         for node in value["nodes"]:
@@ -81,11 +81,9 @@ class Timeline:
             if before is None or before[0] != now[0] or now[0] in _WORTH_ITS_WORDS:
                 self._add("node", robot, stamp_s, node["id"], *now)
 
-    def _take_pose(self, robot: str, stamp_s: float, pose: Mapping[str, Any]) -> None:
-        at, turn = pose["position"], pose["orientation"]
-        if at["x"] is not None:
-            yaw_rad = 2.0 * math.atan2(turn["z"], turn["w"])
-            self._add("pose", robot, stamp_s, at["x"], at["y"], round(yaw_rad, 4))
+    def _take_pose(self, robot: str, stamp_s: float, pose: Pose2) -> None:
+        if math.isfinite(pose.x):
+            self._add("pose", robot, stamp_s, pose.x, pose.y, round(pose.yaw_rad, 4))
 
     def _take_figures(self, robot: str, stamp_s: float, value: Mapping[str, Any]) -> None:
         self._add("figures", robot, stamp_s, value["coverage"], value["speed_mps"], value["distance_m"])

@@ -87,10 +87,9 @@ def tree_statistics(recordings: Iterable[Recording]) -> TreeStatistics:
 
 
 def _last_tallies(recording: Recording, robot: str) -> list[NodeTally]:
-    last: dict[str, list[dict[str, float]]] = {"nodes": []}
-    for message in recording.messages(f"/{robot}/nodes"):
-        last = message.value
-    return [NodeTally(**{name: node[name] for name in _FIELDS}) for node in last["nodes"]]  # type: ignore[arg-type]  # as it was written
+    last = recording.last(f"/{robot}/nodes")
+    nodes = [] if last is None else last.value["nodes"]
+    return [NodeTally(**{name: node[name] for name in _FIELDS}) for node in nodes]
 
 
 def _differences(trees: dict[tuple[_Key, ...], list[str]]) -> Sequence[str]:

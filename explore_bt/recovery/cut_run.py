@@ -20,10 +20,11 @@ from explore_bt.checkpoint import (
     read_recent,
 )
 from explore_bt.errors import MissionError, UserError
+from explore_bt.files import RECORDING
 from explore_bt.interfaces import Resumption
 from explore_bt.mission import Mission, load_mission
 from explore_bt.plugin import Registry, load_plugins
-from explore_bt.recording import RECORDING, Recording, RecordingError, read_recording
+from explore_bt.recording import Recording, RecordingError, read_recording
 from explore_bt.recovery.moments import moments_of
 from explore_bt.recovery.tail import Tail, tail_of
 from explore_bt.runtime import (

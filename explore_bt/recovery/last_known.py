@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from explore_bt.exploration import ArgumentError, ate_rmse_m
-from explore_bt.recording import Recording, decode_grid
-from explore_bt.recovery.messages import number, pose_of, score_of
+from explore_bt.recording import Recording, decode_grid, decode_pose
+from explore_bt.recovery.messages import number, score_of
 from explore_bt.types import OccupancyGrid, Outcome, Result, Score, Trajectory
 
 __all__ = ["recorded_map", "recorded_result", "recorded_way"]
@@ -22,15 +22,13 @@ _RESULT = tuple(field.name for field in fields(Result))
 def recorded_map(recording: Recording, name: str) -> OccupancyGrid:
     """The last map of a robot; empty where none was recorded."""
     grid = OccupancyGrid(np.empty((0, 0), dtype=np.int8), 0.05, (0.0, 0.0))
-    last = None
-    for last in recording.messages(f"/{name}/map"):  # noqa: B007  # only the last one counts
-        pass
+    last = recording.last(f"/{name}/map")
     return grid if last is None else decode_grid(last.value)
 
 
 def recorded_way(recording: Recording, topic: str) -> Trajectory | None:
     """The poses of a topic; None where none was recorded."""
-    rows = [(message.stamp_s, pose_of(message.value)) for message in recording.messages(topic)]
+    rows = [(message.stamp_s, decode_pose(message.value["pose"])) for message in recording.messages(topic)]
     kept = [(stamp_s, pose) for stamp_s, pose in rows if math.isfinite(pose.x + pose.y + pose.yaw_rad)]
     if not kept:
         return None
@@ -41,9 +39,7 @@ def recorded_way(recording: Recording, topic: str) -> Trajectory | None:
 
 def recorded_result(recording: Recording) -> Result:
     """As it was recorded, or as the last state of the robots tells."""
-    last = None
-    for last in recording.messages("/result"):  # noqa: B007  # only the last one counts
-        pass
+    last = recording.last("/result")
     if last is not None and last.value.get("outcome") in set(Outcome):
         return _of_message(last.value)
     info = recording.info
@@ -89,7 +85,5 @@ def _of_message(value: Mapping[str, Any]) -> Result:
 
 
 def _last_score(recording: Recording, name: str) -> Score:
-    score = Score()
-    for message in recording.messages(f"/{name}/state", max(recording.duration_s - 10.0, 0.0)):
-        score = score_of(message.value)
-    return score
+    last = recording.last(f"/{name}/state", max(recording.duration_s - 10.0, 0.0))
+    return Score() if last is None else score_of(last.value)

@@ -7,13 +7,11 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from explore_bt.interfaces import Event
-from explore_bt.recording import RecordedMessage
-from explore_bt.types import MotionState, Pose2, Score, Twist2, Waypoint
+from explore_bt.recording import decode_pose
+from explore_bt.types import MotionState, Score, Twist2, Waypoint
 
-__all__ = ["event_of", "motion_of", "number", "pose_of", "score_of", "waypoint_of"]
+__all__ = ["motion_of", "number", "score_of", "waypoint_of"]
 
-_LEVELS = {1: "debug", 2: "info", 3: "warning", 4: "error"}
 _SCORES = tuple(field.name for field in fields(Score))
 
 
@@ -23,13 +21,6 @@ def number(value: object, otherwise: float = math.nan) -> float:
         return float(value)  # type: ignore[arg-type]  # anything may stand there
     except (TypeError, ValueError):
         return otherwise
-
-
-def pose_of(value: Mapping[str, Any]) -> Pose2:
-    """Of ``foxglove.PoseInFrame``; not finite where there was none."""
-    pose = value["pose"]
-    at, turn = pose["position"], pose["orientation"]
-    return Pose2(number(at["x"]), number(at["y"]), 2.0 * math.atan2(number(turn["z"]), number(turn["w"])))
 
 
 def score_of(value: Mapping[str, Any]) -> Score:
@@ -46,13 +37,4 @@ def motion_of(value: Mapping[str, Any]) -> MotionState:
 def waypoint_of(value: Mapping[str, Any]) -> Waypoint:
     """Of ``/<robot>/visited``."""
     gain_m2 = number(value.get("expected_gain_m2"), 0.0)
-    return Waypoint(pose_of(value), str(value.get("reason", "")), gain_m2)
-
-
-def event_of(message: RecordedMessage, robots: tuple[str, ...]) -> Event:
-    """Of ``/events``."""
-    robot, slash, source = str(message.value.get("name", "")).partition("/")
-    if not slash or robot not in robots:
-        robot, source = "", str(message.value.get("name", ""))
-    level = _LEVELS.get(int(number(message.value.get("level"), 2.0)), "info")
-    return Event(message.stamp_s, robot, level, source, str(message.value.get("message", "")))
+    return Waypoint(decode_pose(value["pose"]), str(value.get("reason", "")), gain_m2)

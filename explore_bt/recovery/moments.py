@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from explore_bt.interfaces import Event, NodeState, RobotSnapshot, TickSnapshot
-from explore_bt.recording import RecordedMessage, Recording, decode_grid
-from explore_bt.recovery.messages import event_of, motion_of, pose_of, score_of, waypoint_of
+from explore_bt.recording import RecordedMessage, Recording, decode_event, decode_grid, decode_pose
+from explore_bt.recovery.messages import motion_of, score_of, waypoint_of
 from explore_bt.types import Estimate, Health, MotionState, OccupancyGrid, Pose2, Score, Waypoint
 
 __all__ = ["moments_of"]
@@ -30,7 +30,7 @@ def moments_of(recording: Recording) -> Iterator[TickSnapshot | Event]:
             index, is_new = index + 1, False
         stamp_s = max(stamp_s, message.stamp_s)
         if message.topic == "/events":
-            yield event_of(message, tuple(robots))
+            yield decode_event(message.stamp_s, message.value, robots)
             continue
         name, _, topic = message.topic[1:].partition("/")
         if name in robots:
@@ -98,10 +98,10 @@ class _Robot:
                 self._nodes[node["id"]] = state
 
     def _at(self, value: Mapping[str, Any]) -> None:
-        self._pose = pose_of(value)
+        self._pose = decode_pose(value["pose"])
 
     def _truly_at(self, value: Mapping[str, Any]) -> None:
-        self._true_pose = pose_of(value)
+        self._true_pose = decode_pose(value["pose"])
 
     def _state(self, value: Mapping[str, Any]) -> None:
         self._score, self._motion = score_of(value), motion_of(value)

@@ -11,10 +11,10 @@ import numpy as np
 
 from explore_bt.errors import UserError
 from explore_bt.exploration import ArgumentError, ate_rmse_m
-from explore_bt.files import write_whole
+from explore_bt.files import RECORDING, write_whole
 from explore_bt.interfaces import Event, NodeInfo, RobotContext, RobotProduct, RunInfo, Slam, TickSnapshot
 from explore_bt.plugin import load_plugins
-from explore_bt.recording import RECORDING, Recording, read_recording
+from explore_bt.recording import Recording, read_recording
 from explore_bt.recovery.cut_run import BrokenOff, find_broken_off
 from explore_bt.recovery.last_known import recorded_map, recorded_result, recorded_way
 from explore_bt.recovery.messages import number

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from explore_bt.checkpoint import RobotMemory
-from explore_bt.recording import Recording, decode_measurements
-from explore_bt.recovery.messages import pose_of, score_of
+from explore_bt.recording import Recording, decode_measurements, decode_pose
+from explore_bt.recovery.messages import score_of
 from explore_bt.runtime import sort_of
 from explore_bt.types import Measurement, Pose2, Score, Trajectory
 
@@ -45,11 +45,11 @@ def tail_of(recording: Recording, robot: str, memory: RobotMemory, since_s: floa
         since_s: mission time of the checkpoint.
     """
     way = [
-        (message.stamp_s, pose_of(message.value))
+        (message.stamp_s, decode_pose(message.value["pose"]))
         for message in recording.messages(f"/{robot}/truth", since_s)
         if message.stamp_s > since_s
     ]
-    poses = [pose_of(each.value) for each in recording.messages(f"/{robot}/pose", since_s)]
+    poses = [decode_pose(each.value["pose"]) for each in recording.messages(f"/{robot}/pose", since_s)]
     states = [each.value for each in recording.messages(f"/{robot}/state", since_s) if each.stamp_s > since_s]
     return Tail(
         measured=tuple(_measured(recording, robot, memory.heard, since_s)),

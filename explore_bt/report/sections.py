@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 from urllib.parse import quote
 
+from explore_bt.files import RECORDING
 from explore_bt.interfaces import NodeInfo
 from explore_bt.recording import NodeTally
 from explore_bt.report.history import RobotHistory
@@ -33,7 +34,7 @@ _ABOUT_FILES = {
     "map_view.png": "map, path and waypoints as a picture",
     "trajectory.tum": "estimated trajectory, TUM format",
     "truth.tum": "true trajectory, TUM format",
-    "recording.mcap": "the whole run, opens in Foxglove",
+    RECORDING: "the whole run, opens in Foxglove",
 }
 
 

@@ -1,6 +1,7 @@
 """A mission at work: robots, tick loop, safety gate, stop flag; and mapping from a log, without a robot."""
 
 from explore_bt.runtime.attendant import Attendant
+from explore_bt.runtime.attendants import Attendants
 from explore_bt.runtime.exports import export
 from explore_bt.runtime.kept_values import RUN_FILE, codec_for, robot_file, run_codec, slam_folder
 from explore_bt.runtime.mapping import HealthChange, Mapping, map_log
@@ -18,6 +19,7 @@ __all__ = [
     "ENDING_KEYS",
     "RUN_FILE",
     "Attendant",
+    "Attendants",
     "Cut",
     "CutRun",
     "HealthChange",

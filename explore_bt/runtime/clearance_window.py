@@ -32,22 +32,30 @@ class ClearanceWindow:
 
     def cut(self, grid: OccupancyGrid, near: Pose2, seen: NDArray[np.float64]) -> None:
         """Take the map around ``near``, without the obstacles that the scan's points (N, 2) show."""
-        row, col = grid.cell_of(near.x, near.y)
-        reach = int(self._reach_m / grid.resolution_m)
-        row0, col0 = max(0, row - reach), max(0, col - reach)
-        cells = grid.cells[row0 : max(row0, row + reach + 1), col0 : max(col0, col + reach + 1)]
-        if cells.size == 0:
+        window = grid.window_around(near.x, near.y, self._reach_m)
+        if window.is_empty:
             self._field = np.zeros((1, 1), dtype=np.float32)
             return
         resolution = grid.resolution_m
-        origin = (grid.origin_xy[0] + col0 * resolution, grid.origin_xy[1] + row0 * resolution)
-        self._field = clearance_field(_without_seen(OccupancyGrid(cells, resolution, origin), seen))
+        corner = np.array([window.col0, window.row0]) * resolution
+        origin = (grid.origin_xy[0] + float(corner[0]), grid.origin_xy[1] + float(corner[1]))
+        cut = OccupancyGrid(grid.cells[window.slices], resolution, origin)
+        self._field = clearance_field(_without_seen(cut, seen))
         self._origin_xy = origin
         self._resolution_m = resolution
 
-    def clearance_m(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(N,) metres at (N, 2) positions."""
-        return _sample(self._field, *self._origin_xy, self._resolution_m, positions)
+    def clearance_m(
+        self, positions: NDArray[np.float64], *, between_cells: bool = False
+    ) -> NDArray[np.float64]:
+        """(N,) metres at (N, 2) positions.
+
+        Args:
+            positions: metres, ``map`` frame.
+            between_cells: where exactly in its cell a position lies counts; else the cell's centre does,
+                which is up to half a cell nearer or farther.
+        """
+        sample = _sample_between if between_cells else _sample
+        return sample(self._field, *self._origin_xy, self._resolution_m, positions)
 
 
 def _without_seen(grid: OccupancyGrid, seen: NDArray[np.float64]) -> OccupancyGrid:
@@ -72,4 +80,22 @@ def _sample(
         row = int(np.floor((positions[i, 1] - y0) / resolution))
         if 0 <= row < field.shape[0] and 0 <= col < field.shape[1]:
             out[i] = field[row, col]
+    return out
+
+
+@njit(cache=True)
+def _sample_between(
+    field: NDArray[np.float32], x0: float, y0: float, resolution: float, positions: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Bilinear between the centres of cells; beyond the field all is 0."""
+    out = np.zeros(positions.shape[0])
+    for i in range(positions.shape[0]):
+        u = (positions[i, 0] - x0) / resolution - 0.5
+        v = (positions[i, 1] - y0) / resolution - 0.5
+        col, row = int(np.floor(u)), int(np.floor(v))
+        for dr in range(2):
+            for dc in range(2):
+                r, c = row + dr, col + dc
+                if 0 <= r < field.shape[0] and 0 <= c < field.shape[1]:
+                    out[i] += field[r, c] * abs(1 - dr - (v - row)) * abs(1 - dc - (u - col))
     return out

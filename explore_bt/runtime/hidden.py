@@ -47,29 +47,28 @@ class HiddenFloor:
             sight: the newest scan.
             people: who was seen a moment ago; once out of sight they may be anywhere near.
         """
-        row, col = grid.cell_of(*sight.origin.tolist())
-        reach = math.ceil(REACH_M / grid.resolution_m)
-        row0, col0 = max(row - reach, 0), max(col - reach, 0)
-        cells = grid.cells[row0 : max(row + reach + 1, 0), col0 : max(col + reach + 1, 0)]
+        x, y = sight.origin.tolist()
+        window = grid.window_around(x, y, REACH_M)
+        corner, cells = (window.row0, window.col0), grid.cells[window.slices]
         free = np.argwhere(cells == FREE)
         if not len(free):
             return np.empty((0, 2))
-        places = grid.centers_of(free + np.array([row0, col0]))
+        places = grid.centers_of(free + np.array(corner))
         in_sight = np.zeros(cells.shape, dtype=np.bool_)
         in_sight[tuple(free[sight.shows(places)].T)] = True
         slim = _SLIM_M / grid.resolution_m
         has_room = (cells == FREE) & (_distance(in_sight) > slim) & (_distance(cells == OCCUPIED) > slim)
-        before = self._before(grid, (row0, col0), cells.shape)
+        before = self._before(grid, corner, cells.shape)
         for place in grid.cells_of(np.array([thing.at(sight.stamp_s) for thing in people]).reshape(-1, 2)):
-            y, x = place - np.array([row0, col0])
-            if 0 <= y < before.shape[0] and 0 <= x < before.shape[1]:
-                before[y, x] = 1
+            row, col = place - np.array(corner)
+            if 0 <= row < before.shape[0] and 0 <= col < before.shape[1]:
+                before[row, col] = 1
         spread = self._spread(before, sight.stamp_s, grid.resolution_m)
         self._hidden = (spread & has_room).astype(np.uint8)
-        self._corner = self._lattice(grid, row0, col0)
+        self._corner = self._lattice(grid, *corner)
         self._stamp_s, self._resolution_m = sight.stamp_s, grid.resolution_m
         edge = self._hidden - cv2.erode(self._hidden, _CROSS)
-        return grid.centers_of(np.argwhere(edge) + np.array([row0, col0]))
+        return grid.centers_of(np.argwhere(edge) + np.array(corner))
 
     def may_hide(self, place: NDArray[np.float64]) -> bool:
         """Whether the centre of someone unseen may be at (2,) x, y, metres, ``map`` frame."""

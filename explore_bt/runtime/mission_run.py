@@ -19,6 +19,7 @@ from explore_bt.plugin import Registry
 from explore_bt.runtime.attendant import Attendant
 from explore_bt.runtime.exports import export
 from explore_bt.runtime.observers import Observers
+from explore_bt.runtime.requests import Requests
 from explore_bt.runtime.resumption import CutRun
 from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.run_checkpoints import CHECKPOINTS, RunCheckpoints
@@ -74,6 +75,7 @@ def run_mission(
     try:
         for robot in robots:
             robot.setup(resumed.robots[robot.name] if resumed else None)
+            observers.add(robot.driver.observers())
         _make_folder(out)
         with CheckpointStore(out / CHECKPOINTS).locked():
             return _run(
@@ -120,7 +122,14 @@ def _run(
         observers.event(_going_on(resumed, info))
     checkpoints = RunCheckpoints(mission, robots, run.seed, out, observers.event, run.began_s, resumed)
     runner = Runner(
-        mission, robots, observers, stop, run.attendant, resumed=resumed, after_tick=checkpoints.after_tick
+        mission,
+        robots,
+        observers,
+        Requests(robots, stop, out),
+        stop,
+        run.attendant,
+        resumed=resumed,
+        after_tick=checkpoints.after_tick,
     )
     try:
         checkpoints.begin(runner)

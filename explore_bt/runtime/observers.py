@@ -23,6 +23,10 @@ class Observers:
     def __init__(self, sinks: Sequence[Sink]) -> None:
         self._failures = dict.fromkeys(sinks, 0)
 
+    def add(self, sinks: Iterable[Sink]) -> None:
+        """More of them, before the run begins."""
+        self._failures |= dict.fromkeys(sinks, 0)
+
     def open(self, run: RunInfo) -> None:
         """The run begins; a sink that cannot open is cut off at once."""
         for sink in list(self._failures):

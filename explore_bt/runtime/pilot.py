@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,19 @@ from numpy.typing import NDArray
 from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, HeldBy, Surroundings
 from explore_bt.runtime.pose_predictor import PosePredictor
 from explore_bt.runtime.safety_gate import SafetyGate
-from explore_bt.types import Estimate, Health, Mate, MotionState, Path, Pose2, Scan2D, Twist2, way_along
+from explore_bt.types import (
+    BodyFault,
+    Estimate,
+    Health,
+    Mate,
+    MotionLimits,
+    MotionState,
+    Path,
+    Pose2,
+    Scan2D,
+    Twist2,
+    way_along,
+)
 
 __all__ = ["Pilot"]
 
@@ -18,6 +31,8 @@ STALE_SCAN_S = 0.5
 """A scan older than this is no ground to drive on: five missed sweeps of a 10 Hz lidar."""
 STALE_ESTIMATE_S = 1.0
 """An older one says little of here and now: the predictor knows the commands of two seconds only."""
+FORGET = 0.99
+"""Of what is added to a control period because periods have lately been late; gone after some seconds."""
 JUMP_M = 0.03
 JUMP_RAD = math.radians(3.0)
 """More than a body strays from its commands between two scans: the estimate was corrected."""
@@ -28,10 +43,20 @@ _AHEAD_M, _AHEAD_STEP_M = 8.0, 0.25
 
 
 class Pilot:
-    """Runs once per control period; every command passes the gate."""
+    """Runs once per control period; every command passes the gate.
 
-    def __init__(self, controller: Controller, gate: SafetyGate, driver: Driver) -> None:
+    Args:
+        controller: asked for the next twist.
+        gate: has the last word.
+        driver: is sent it.
+        limits: of the controller; the gate's brake may be harder.
+    """
+
+    def __init__(
+        self, controller: Controller, gate: SafetyGate, driver: Driver, limits: MotionLimits
+    ) -> None:
         self._controller = controller
+        self._limits = limits
         self._gate = gate
         self._driver = driver
         self._predictor = PosePredictor(driver.command_delay_s)
@@ -42,6 +67,7 @@ class Pilot:
         self._blocked_since_s: float | None = None
         self.held_by = HeldBy.NOTHING
         self._now_s = 0.0
+        self._in_force_s = 0.0
         self._shown: Estimate | None = None
         self._unseen: Surroundings | None = None
 
@@ -60,6 +86,15 @@ class Pilot:
         """Whether the last command was to stand still."""
         twist = self.motion.twist
         return abs(twist.linear_mps) < _REST and abs(twist.angular_rps) < _REST
+
+    @property
+    def body_fault(self) -> BodyFault | None:
+        """Why the body cannot drive now; None while it can."""
+        return self._driver.fault
+
+    def recover_body(self) -> bool:
+        """Have the body begin to get out of its fault; False where it cannot."""
+        return self._driver.recover()
 
     @property
     def mates(self) -> tuple[Mate, ...]:
@@ -113,28 +148,47 @@ class Pilot:
         """Whether the pose is elsewhere than the one shown last and the commands since then lead to."""
         if self._shown is None:
             return False
-        expected = self._predictor.predict(self._shown, estimate.stamp_s).T_map_base
+        expected = self._predictor.carry(self._shown, estimate.stamp_s).T_map_base
         off = expected.inverse().compose(estimate.T_map_base)
         return math.hypot(off.x, off.y) > JUMP_M or abs(off.yaw_rad) > JUMP_RAD
 
+    def twist_at(self, time_s: float) -> Twist2:
+        """What the body drove at a time of the last seconds, its lag behind its commands counted."""
+        return self._predictor.twist_at(time_s)
+
+    def carry(self, estimate: Estimate, time_s: float) -> Estimate:
+        """The estimate carried forward to a time of the last seconds, the body's lag counted."""
+        return self._predictor.carry(estimate, time_s)
+
     def predict(self, estimate: Estimate, now_s: float) -> Estimate:
-        """The estimate carried forward to now along the commands sent since its stamp."""
+        """Where all that was sent leads to, from the estimate."""
         return self._predictor.predict(estimate, now_s)
 
     def step(self, estimate: Estimate, scan: Scan2D | None, now_s: float, dt_s: float) -> None:
-        """One control period: ask the controller, pass its wish through the gate, send the outcome."""
+        """One control period: ask the controller, pass its wish through the gate, send the outcome.
+
+        Args:
+            estimate: the newest pose.
+            scan: the newest scan.
+            now_s: the time.
+            dt_s: since the last command; the next may take as long as the longest of late.
+        """
         self._now_s = now_s
+        self._in_force_s = max(dt_s, FORGET * self._in_force_s)
         now = self.predict(estimate, now_s)
         if self._unseen is not None:
             surroundings, self._unseen = self._unseen, None
             self._controller.see(surroundings)
-        self._output = self._controller.step(now, scan, self.motion, dt_s)
-        fault = _unfit_to_drive(estimate, scan, now_s)
+        self._output = self._controller.step(now, scan, self._motion_within_limits(), dt_s)
+        body = self.body_fault
+        fault = body.reason if body else self._driver.hindrance() or _unfit_to_drive(estimate, scan, now_s)
         if fault:
             following, self.gate_reason = self._gate.brake(self.motion, dt_s), fault
-            self.held_by = HeldBy.SENSES
+            self.held_by = HeldBy.BODY if body else HeldBy.SENSES
         else:
-            decision = self._gate.decide(self._output.twist, now.T_map_base, self.motion, dt_s, now_s)
+            decision = self._gate.decide(
+                self._output.twist, now.T_map_base, self.motion, dt_s, now_s, self._in_force_s
+            )
             following, self.gate_reason = decision.motion, decision.reason
             self.held_by = decision.held_by
         if not self.gate_reason:
@@ -142,6 +196,18 @@ class Pilot:
         elif self._blocked_since_s is None:
             self._blocked_since_s = now_s
         self._send(following, now_s)
+
+    def _motion_within_limits(self) -> MotionState:
+        """What the controller goes on from: not what it could not have come to, nor could end before rest.
+
+        A brake harder than its limits is let go of by the gate, whose jerk is the brake's.
+        """
+        limits, motion = self._limits, self.motion
+        speed_mps, before = abs(motion.twist.linear_mps), motion.linear_acceleration_mps2
+        most = limits.acceleration_mps2
+        if before * motion.twist.linear_mps <= 0.0:
+            most = min(most, math.sqrt(2.0 * limits.jerk_mps3 * speed_mps))
+        return replace(motion, linear_acceleration_mps2=min(max(before, -most), most))
 
     def pause(self, reason: str, now_s: float, dt_s: float) -> None:
         """One control period at rest that the controller knows nothing of: the path is gone on with later."""

@@ -29,6 +29,7 @@ from explore_bt.runtime.team_mate import first_path, grids_to_try, standing
 from explore_bt.runtime.team_place import team_place
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
+from explore_bt.runtime.upright import Upright
 from explore_bt.runtime.way_finder import WayFinder
 from explore_bt.tree import Blackboard, PortUnsetError, Probe, Status, attach, halt, tick
 from explore_bt.types import (
@@ -46,7 +47,6 @@ from explore_bt.types import (
 
 __all__ = ["Robot"]
 
-DEFAULT_LIDAR_RANGE_M = 5.0
 REASON_KEY = "reason"
 """Blackboard entry in which a tree may say why it ended."""
 OVER_BUDGET_KEY = "over_budget"
@@ -92,7 +92,7 @@ class Robot:
         self._tight = TightPlaces()
         self._purse = Purse(mission.limits)
         self._faults = FaultLog(self.name, self.tell)
-        self._senses = Senses(self.slam, self._faults)
+        self._senses = Senses(self.slam, Upright(self.driver, self.slam), self._faults)
         self._held_s = 0.0
         self._news = RobotNews(self.tree, self.tell)
 
@@ -118,7 +118,9 @@ class Robot:
             start=self.driver.start,
             footprint_radius_m=self.driver.footprint_radius_m,
             limits=limits,
+            shape=self.driver.shape,
             truth=self.driver.truth(),
+            connection=self.driver.connection,
         )
         self.home = cut.memory.home if cut else self.driver.start
         warm_up()
@@ -130,9 +132,11 @@ class Robot:
         self.team.setup(context, self.team_map)
         self._planner.setup(context)
         self._controller.setup(context)
+        self._senses.setup(self.driver.shape)
         self._limits = limits
-        gate = SafetyGate(self.driver.footprint_radius_m, limits)
-        self.pilot = Pilot(self._controller, gate, self.driver)
+        brake = self._mission.limits.of_brake(self.driver.limits)
+        gate = SafetyGate(self.driver.footprint_radius_m, brake, self.driver.command_delay_s)
+        self.pilot = Pilot(self._controller, gate, self.driver, limits)
         self.scores = Scorekeeper(self.home, context.truth)
         parts: dict[str, Remembering] = {
             "scores": self.scores,
@@ -142,8 +146,6 @@ class Robot:
         self._keeping = RobotKeeping(self.tree, self.blackboard, parts)
         if cut is not None:
             self._restore(cut)
-
-    # --- what leaves may ask for -------------------------------------------------------------------
 
     @property
     def footprint_radius_m(self) -> float:
@@ -158,8 +160,7 @@ class Robot:
     @property
     def lidar_range_m(self) -> float:
         """How far the lidar sees."""
-        scan = self._senses.scan
-        return scan.range_max_m if scan else DEFAULT_LIDAR_RANGE_M
+        return self._senses.range_m
 
     @property
     def moving(self) -> tuple[MovingObstacle, ...]:
@@ -250,16 +251,15 @@ class Robot:
         """Open such places again, unless that was done ``chances`` times before; how many."""
         return self._tight.reopen(chances)
 
-    # --- what the runner calls, in this order, every control period -----------------------------------
-
     def sense(self) -> None:
         """Take in what the driver measured since the last time."""
+        before = self.scan()
         measurements = self._read()
         self._hear_team()
         for measurement in measurements:
             self._take(measurement)
-        if any(isinstance(measurement, Scan2D) for measurement in measurements):
-            self.pilot.see(*self._senses.look(self.pilot))
+        if (scan := self.scan()) is not None and scan is not before:
+            self.pilot.see(*self._senses.look(scan, self.pilot))
         self._news.of_health(self.estimate(), self._clock_s())
 
     def act(self, now_s: float, dt_s: float) -> None:

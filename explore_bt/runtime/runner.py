@@ -9,6 +9,7 @@ from explore_bt.interfaces import Event, TickSnapshot
 from explore_bt.mission import Mission
 from explore_bt.runtime.attendant import Attendant
 from explore_bt.runtime.observers import Observers
+from explore_bt.runtime.requests import Requests
 from explore_bt.runtime.resumption import CutRun
 from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.stop_flag import StopFlag
@@ -20,6 +21,8 @@ __all__ = ["Runner"]
 
 FIRST_SCAN_TIMEOUT_S = 5.0
 REST_TIMEOUT_S = 5.0
+LONGEST_PERIOD_S = 0.25
+"""After so long without a command a driver in real time has halted its robot."""
 _LEVELS = {Outcome.FAILED: "error", Outcome.BUDGET: "warning"}
 
 
@@ -39,6 +42,7 @@ class Runner:
         mission: as loaded and checked.
         robots: set up.
         observers: who is shown every tick.
+        requests: what people ask for through the robots.
         stop: raised by anyone who wants an end.
         attendant: stands beside the tick loop.
         resumed: where the run goes on, None for one that begins.
@@ -54,6 +58,7 @@ class Runner:
         mission: Mission,
         robots: Sequence[Robot],
         observers: Observers,
+        requests: Requests,
         stop: StopFlag,
         attendant: Attendant,
         *,
@@ -63,6 +68,7 @@ class Runner:
         self._mission = mission
         self.robots = robots
         self._observers = observers
+        self._requests = requests
         self.stop = stop
         self._attendant = attendant
         self._dt_s = 1.0 / mission.control_rate_hz
@@ -71,6 +77,7 @@ class Runner:
         self._after_tick = after_tick
         self.ended: dict[str, Status] = {}
         self._rest_until_s = 0.0
+        self._acted_s: dict[str, float] = {}
         self._held_s = 0.0
         self.tick = 0
         if resumed is not None:
@@ -90,14 +97,16 @@ class Runner:
     def run(self) -> None:
         """Until everything stands still; ``outcome`` and ``reason`` then tell why."""
         self._attendant.begin(self)
+        self._begin_s = max(self._begin_s, *(robot.driver.clock.now_s() for robot in self.robots))
         while self._phase is not _Phase.OVER:
             self._advance()
             is_tick = self._is_tick
             if is_tick:
+                self._requests.heed(self.hold)
                 self._attendant.on_period()
                 self._decide()
             for robot in self.robots:
-                robot.act(self.now_s, self._dt_s)
+                robot.act(*self._period_of(robot))
             if is_tick:
                 self._show()
                 self._after_tick(self)
@@ -109,7 +118,7 @@ class Runner:
         observers. The robots brake to rest and stand, and will go on where they were.
         """
         for robot in self.robots:
-            robot.hold(reason, self.now_s, self._dt_s)
+            robot.hold(reason, *self._period_of(robot))
         self._advance()
         self._held_s += self._dt_s
         if self._is_tick:
@@ -129,13 +138,33 @@ class Runner:
         return self._step % self._steps_per_tick == 0
 
     def _advance(self) -> None:
-        """Go on to the next control period."""
-        self._step += 1
+        """Go on to the next control period, in real time to the one that is due: none is made up for."""
+        missed = self._ticks_missed
+        self.tick += missed
+        self._step += 1 + missed * self._steps_per_tick
         self.now_s = self._step * self._dt_s
         for robot in self.robots:
             robot.driver.clock.wait_until(self.now_s)
         for robot in self.robots:
             robot.sense()
+
+    def _period_of(self, robot: Robot) -> tuple[float, float]:
+        """The time at which a robot is commanded, and how long ago that was done last.
+
+        In simulated time both are nominal; in real time a late loop has let the last command drive on.
+        """
+        if self.is_simulated:
+            return self.now_s, self._dt_s
+        now_s = max(robot.driver.clock.now_s(), self.now_s)
+        since_s = now_s - self._acted_s.get(robot.name, self.now_s)
+        self._acted_s[robot.name] = now_s
+        return now_s, min(max(since_s, self._dt_s), LONGEST_PERIOD_S)
+
+    @property
+    def _ticks_missed(self) -> int:
+        """Whole ticks that have gone by since this period began; commands for the past help nobody."""
+        late_s = max(robot.driver.clock.now_s() for robot in self.robots) - self.now_s
+        return 0 if self.is_simulated else max(int(late_s / self._dt_s) // self._steps_per_tick, 0)
 
     def _decide(self) -> None:
         if self._phase is _Phase.WAKING:
@@ -155,7 +184,8 @@ class Runner:
             robot = blind[0]
             found = "no scan" if robot.scan() is None else "only scans without a valid beam"
             complaint = f"driver {robot.driver.name} gave {found} in {FIRST_SCAN_TIMEOUT_S:.0f} s"
-            self._end(Outcome.FAILED, f"robot {robot.name}: {complaint}; check the lidar")
+            hint = robot.driver.hindrance() or "check the lidar"
+            self._end(Outcome.FAILED, f"robot {robot.name}: {complaint}; {hint}")
 
     def _tick_trees(self) -> None:
         self._attendant.before_tick()

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -35,6 +35,8 @@ what has just appeared, but its noise may not stop the robot in every door, so a
 HASTE_MARGIN_M = 0.02
 CRAWL_MPS, FAST_MPS = 0.1, 0.3
 """More for all of them beyond a crawl, all of it when fast, where less time is left to find out."""
+MAP_ERROR_M = 0.02
+"""By so much a wall may stand before its cells; it counts where the scans cannot say, beside who moves."""
 LOOK_AHEAD_M = 1.5
 """How far around the robot map and points are looked at: any stop from 0.8 m/s, plus the footprint."""
 INSIDE_SHARE = 0.6
@@ -63,6 +65,7 @@ CAUTIOUS_MPS = 0.14
 """So slow the robot goes on, though someone might step out: else it would never pass a door."""
 BESIDE_M = 0.15
 """Returns so near to what was seen of a moving thing are its own."""
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,15 +93,25 @@ class SafetyGate:
         in_the_way: the name of the one that it was last held for.
     """
 
-    def __init__(self, footprint_radius_m: float, limits: MotionLimits) -> None:
+    def __init__(self, footprint_radius_m: float, limits: MotionLimits, delay_s: float = 0.0) -> None:
+        """Guard a robot.
+
+        Args:
+            footprint_radius_m: of the robot.
+            limits: of the brake; it may be harder than anything the controller does.
+            delay_s: so much later than its commands it is where they lead: people walk on meanwhile.
+        """
         self.mates: tuple[Mate, ...] = ()
         self.in_the_way = ""
         self._radius_m = footprint_radius_m
+        self._delay_s = delay_s
         self._limits = limits
         self._brake = _Brake(MotionState())
         self._window = ClearanceWindow(LOOK_AHEAD_M)
         self._is_held = False
         self._around: Surroundings | None = None
+        self._walkers = np.empty((0, 7))
+        self._map_margin_m = 0.0
         self._from_moving: WalkingDistance | None = None
         self._from_hidden: WalkingDistance | None = None
         self._unsure_until_s = -math.inf
@@ -113,10 +126,12 @@ class SafetyGate:
         """
         points = surroundings.points
         self._around = surroundings
+        self._walkers = _walkers(surroundings)
         for thing in surroundings.moving:  # it is kept clear of by itself, and will not be there for ever
             points = points[np.hypot(*(points - thing.xy).T) > thing.radius_m + BESIDE_M]
         is_near = np.hypot(points[:, 0] - near.x, points[:, 1] - near.y) < LOOK_AHEAD_M
         self._scans.append(np.ascontiguousarray(points[is_near]))
+        self._map_margin_m = MAP_ERROR_M if len(points) < len(surroundings.points) else 0.0
         self._window.cut(surroundings.grid, near, points)  # the map answers for the wall beside whoever moves
         self._from_moving = _walking_from_moving(surroundings, near)
         self._from_hidden = _walking_from_hidden(surroundings, near)
@@ -126,7 +141,13 @@ class SafetyGate:
         self._scans.clear()
 
     def decide(
-        self, wanted: Twist2, pose: Pose2, motion: MotionState, dt_s: float, now_s: float = 0.0
+        self,
+        wanted: Twist2,
+        pose: Pose2,
+        motion: MotionState,
+        dt_s: float,
+        now_s: float = 0.0,
+        in_force_s: float = 0.0,
     ) -> GateDecision:
         """Pass ``wanted`` on, or go on along the brake that was checked last.
 
@@ -136,9 +157,11 @@ class SafetyGate:
             motion: what was sent last.
             dt_s: the control period.
             now_s: the time, on the clock of the scans' stamps.
+            in_force_s: the command may drive for so long before the next one, if that is more than ``dt_s``.
         """
-        following = _state_after(wanted, motion, dt_s)
-        way = way_to_rest(following, pose, motion, self._limits, dt_s)
+        following = _state_after(self._let_go_of_brake(wanted, motion, dt_s), motion, dt_s)
+        before = following if in_force_s > dt_s else motion
+        way = way_to_rest(following, pose, before, self._limits, max(in_force_s, dt_s))
         held_by, fault = HeldBy.OBSTACLE, self._fault_on_the_way(way, following)
         if not fault:
             held_by, fault = HeldBy.SOMEONE, self._fault_by_people(way, now_s)
@@ -153,6 +176,16 @@ class SafetyGate:
     def stop_places(self, motion: MotionState, pose: Pose2, dt_s: float) -> NDArray[np.float64]:
         """(N, 2) metres, ``map`` frame: where the robot passes if it brakes after the coming period."""
         return way_to_rest(motion, pose, motion, self._limits, dt_s).poses[:, :2]
+
+    def _let_go_of_brake(self, wanted: Twist2, motion: MotionState, dt_s: float) -> Twist2:
+        """A brake harder than the controller ever drives ends under its own jerk, before that one goes on."""
+        change = self._limits.jerk_mps3 * dt_s
+        wished = (wanted.linear_mps - motion.twist.linear_mps) / dt_s
+        before = motion.linear_acceleration_mps2
+        if abs(wished - before) <= change + _ROUNDING:
+            return wanted
+        slope = min(max(wished, before - change), before + change)
+        return replace(wanted, linear_mps=motion.twist.linear_mps + slope * dt_s)
 
     def brake(self, motion: MotionState, dt_s: float) -> MotionState:
         """The next state of a controlled stop, whatever the controller wants."""
@@ -169,8 +202,9 @@ class SafetyGate:
         ahead = way.poses
         if not np.any(ahead[:, :2] - ahead[0, :2]):
             return ""  # a disc turning on the spot touches nothing that it does not touch already
-        on_grid = self._window.clearance_m(ahead[:, :2])
-        in_map = _shortfall(on_grid, self._radius_m, "obstacle or unknown space in the map")
+        on_grid = self._window.clearance_m(ahead[:, :2], between_cells=self._map_margin_m > 0.0)
+        needed_m = self._radius_m + self._map_margin_m
+        in_map = _shortfall(on_grid, needed_m, "obstacle or unknown space in the map")
         return in_map or self._fault_in_scans(ahead, following)
 
     def _fault_by_people(self, way: WayToRest, now_s: float) -> str:
@@ -191,25 +225,19 @@ class SafetyGate:
         if away_m[0] < 0.0:
             self._unsure_until_s = now_s + TOUCHED_S
         moving = _until(way.speeds_mps, AT_REST_MPS)
-        times_s = now_s + way.times_s[moving]
+        times_s = now_s + self._delay_s + way.times_s[moving]
         spare_m = np.maximum(
             away_m[moving] - WALKING_MPS * (times_s - around.stamp_s),
-            self._spare_in_the_open_m(way.poses[moving, :2], times_s, around),
+            self._spare_in_the_open_m(way.poses[moving, :2], times_s),
         )
         if (spare_m.size and spare_m.min() < MOVING_MARGIN_M) or away_m[-1] < min(away_m[0], MOVING_MARGIN_M):
             return f"someone {max(away_m[0], 0.0):.1f} m away could be met before the robot stands"
         return ""
 
     def _spare_in_the_open_m(
-        self, places: NDArray[np.float64], times_s: NDArray[np.float64], around: Surroundings
+        self, places: NDArray[np.float64], times_s: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        walkers = np.array(
-            [
-                (*thing.xy, *thing.velocity_mps, thing.radius_m, thing.stamp_s, thing.velocity_off_mps)
-                for thing in around.moving
-            ]
-        )
-        spare_m = spare_of_walkers_m(places, times_s, walkers, WALKING_MPS, STARTING_MPS2)
+        spare_m = spare_of_walkers_m(places, times_s, self._walkers, WALKING_MPS, STARTING_MPS2)
         return spare_m - self._radius_m
 
     def _fault_by_hidden(self, way: WayToRest, now_s: float, around: Surroundings) -> str:
@@ -218,7 +246,7 @@ class SafetyGate:
         if not len(ahead) or self._from_hidden is None:
             return ""
         away_m = self._from_hidden.to(ahead) - self._radius_m
-        walked_m = WALKING_MPS * (now_s + way.times_s[fast] - around.stamp_s)
+        walked_m = WALKING_MPS * (now_s + self._delay_s + way.times_s[fast] - around.stamp_s)
         if (away_m - walked_m).min() >= 0.0:
             return ""
         return "someone may step out before the robot is slow"
@@ -243,6 +271,15 @@ class SafetyGate:
             if fault := _shortfall(room_m, needed_m + margin_m, obstacle, gain_m if count > 1 else 0.0):
                 return fault
         return ""
+
+
+def _walkers(around: Surroundings) -> NDArray[np.float64]:
+    """(K, 7) as ``spare_of_walkers_m`` takes those who move."""
+    rows = [
+        (*thing.xy, *thing.velocity_mps, thing.radius_m, thing.stamp_s, thing.velocity_off_mps)
+        for thing in around.moving
+    ]
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
 def _walking_from_moving(around: Surroundings, near: Pose2) -> WalkingDistance | None:

@@ -11,15 +11,17 @@ from numpy.typing import NDArray
 
 from explore_bt.interfaces import Slam, Surroundings
 from explore_bt.runtime.fault_log import FaultLog
+from explore_bt.runtime.lookout import Lookout
 from explore_bt.runtime.people import People
 from explore_bt.runtime.steadied import steadied
 from explore_bt.runtime.team_mate import without_mates
+from explore_bt.runtime.upright import Upright
 from explore_bt.types import (
+    BodyShape,
     Estimate,
     Health,
     Mate,
     Measurement,
-    MotionState,
     MovingObstacle,
     Pose2,
     Scan2D,
@@ -32,39 +34,53 @@ __all__ = ["Senses"]
 class _Drives(Protocol):
     """The part of the pilot that knows what was commanded."""
 
-    motion: MotionState
-
     def has_jumped(self, estimate: Estimate) -> bool:
         """Whether the pose is elsewhere than commands led to."""
 
-    def predict(self, estimate: Estimate, now_s: float) -> Estimate:
-        """The estimate carried forward."""
+    def carry(self, estimate: Estimate, time_s: float) -> Estimate:
+        """The estimate carried forward, the body's lag counted."""
+
+    def twist_at(self, time_s: float) -> Twist2:
+        """What the body drove at a time of the last seconds."""
 
 
 class Senses:
     """One robot's.
 
     Attributes:
-        scan: the newest, None before the first.
-        scan_pose: where the robot was at its stamp, ``map`` frame; None before the first.
+        scan_pose: where the robot was at the stamp of ``scan``, ``map`` frame; None before the first.
         scan_twist: how it moved then.
         moving: what moves around, as that scan tells.
         measured: what SLAM was given since somebody last emptied this.
         mates: team mates whose word is fresh: SLAM and whoever looks for people are not shown them.
     """
 
-    def __init__(self, slam: Slam, faults: FaultLog) -> None:
+    def __init__(self, slam: Slam, upright: Upright, faults: FaultLog) -> None:
         self._slam = slam
+        self._upright = upright
         self._faults = faults
+        self._lookout = Lookout()
         self._people = People()
         self._slam_fault = ""
-        self.scan: Scan2D | None = None
         self.scan_pose: Pose2 | None = None
         self.scan_twist = Twist2()
         self.moving: tuple[MovingObstacle, ...] = ()
         self.measured: list[Measurement] = []
         self.mates: tuple[Mate, ...] = ()
-        self._strangers: Scan2D | None = None
+
+    def setup(self, shape: BodyShape) -> None:
+        """Know what a 3D lidar's returns are to be judged by; before the first measurement."""
+        self._lookout = Lookout(shape)
+
+    @property
+    def scan(self) -> Scan2D | None:
+        """The newest scan to drive by, None before the first."""
+        return self._lookout.scan
+
+    @property
+    def range_m(self) -> float:
+        """How far the lidar sees."""
+        return self._lookout.range_m
 
     def estimate(self) -> Estimate:
         """SLAM's newest pose, ``lost`` if the plugin itself broke down."""
@@ -73,16 +89,13 @@ class Senses:
             return replace(estimate, health=Health.LOST, reason=self._slam_fault)
         return estimate
 
-    def take(self, measurement: Measurement, pilot: _Drives | None = None) -> bool:
+    def take(self, measurement: Measurement, pilot: _Drives) -> bool:
         """Give one to SLAM; whether it was given. ``pilot`` knows where the robot is meanwhile."""
-        if isinstance(measurement, Scan2D):
-            self.scan = measurement
-            if pilot is not None and self.mates:
-                pose = pilot.predict(self._slam.estimate(), measurement.stamp_s).T_map_base
-                measurement = without_mates(measurement, pose, self.mates)
-            self._strangers = measurement
-        if self._slam_fault:
+        self._lookout.hear(measurement, pilot.twist_at)
+        if self._slam_fault or not self._upright.passes():
             return False
+        if isinstance(measurement, Scan2D):
+            measurement = self._strangers(measurement, pilot)
         self.measured.append(measurement)
         try:
             self._slam.update(measurement)
@@ -93,28 +106,23 @@ class Senses:
 
     def begin(self) -> None:
         """What was taken so far is another process's: drive by nothing before the next scan."""
-        self.measured, self.scan, self.scan_pose = [], None, None
+        self.measured, self.scan_pose = [], None
+        self._lookout.forget()
 
     def drain(self) -> Sequence[Measurement]:
         """What SLAM was given since the last call."""
         measured, self.measured = self.measured, []
         return measured
 
-    def look(self, pilot: _Drives) -> tuple[Surroundings, Estimate]:
+    def look(self, scan: Scan2D, pilot: _Drives) -> tuple[Surroundings, Estimate]:
         """What the newest scan shows, and the estimate at its stamp."""
-        assert self.scan is not None  # asked for after a scan only
-        assert self._strangers is not None  # taken with it
-        estimate = self._estimate_of_scan(self.scan, pilot)
-        self.scan_pose, self.scan_twist = estimate.T_map_base, pilot.motion.twist
+        estimate = self._estimate_of_scan(scan, pilot)
+        twist = pilot.twist_at(scan.stamp_s + float(scan.times_s.mean()))
+        self.scan_pose, self.scan_twist = estimate.T_map_base, twist
         if pilot.has_jumped(estimate):
             self._people.forget()
-        around = self._people.around(
-            self._strangers,
-            estimate.T_map_base,
-            pilot.motion.twist,
-            self.seen_points(pilot),
-            self._slam.grid(),
-        )
+        strangers, points = self._strangers(scan, pilot), self.seen_points(pilot)
+        around = self._people.around(strangers, estimate.T_map_base, twist, points, self._slam.grid())
         self.moving = around.moving
         return around, estimate
 
@@ -125,8 +133,14 @@ class Senses:
         pose = self._estimate_of_scan(self.scan, pilot).T_map_base
         return np.ascontiguousarray(pose.apply(steadied(self.scan).points()))
 
+    def _strangers(self, scan: Scan2D, pilot: _Drives) -> Scan2D:
+        """The scan without those of the team."""
+        if not self.mates:
+            return scan
+        return without_mates(scan, self._estimate_of_scan(scan, pilot).T_map_base, self.mates)
+
     def _estimate_of_scan(self, scan: Scan2D, pilot: _Drives) -> Estimate:
         """The newest, carried forward to the scan where SLAM lags behind."""
         estimate = self._slam.estimate()
         is_late = estimate.stamp_s < scan.stamp_s
-        return pilot.predict(estimate, scan.stamp_s) if is_late else estimate
+        return pilot.carry(estimate, scan.stamp_s) if is_late else estimate

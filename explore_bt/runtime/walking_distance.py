@@ -46,11 +46,10 @@ class WalkingDistance:
         """
         self._centres, self._radii_m = centres, radii_m
         self._resolution_m = grid.resolution_m
-        row, col = grid.cell_of(near.x, near.y)
-        reach = math.ceil(REACH_M / grid.resolution_m)
-        self._row0, self._col0 = max(row - reach, 0), max(col - reach, 0)
+        window = grid.window_around(near.x, near.y, REACH_M)
+        self._row0, self._col0 = window.row0, window.col0
         self._grid = grid
-        cells = grid.cells[self._row0 : max(row + reach + 1, 0), self._col0 : max(col + reach + 1, 0)]
+        cells = grid.cells[window.slices]
         self._field = self._walked(cells) if cells.size and len(centres) else np.empty((0, 0))
 
     def to(self, places: NDArray[np.float64]) -> NDArray[np.float64]:

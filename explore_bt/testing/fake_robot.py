@@ -12,6 +12,7 @@ from explore_bt.fleet import Alone
 from explore_bt.interfaces import ControlOutput, ControlStatus, HeldBy, MapView
 from explore_bt.types import (
     FREE,
+    BodyFault,
     Budget,
     Drawing,
     Estimate,
@@ -37,7 +38,15 @@ class FakePilot:
         self.blocked_s = 0.0
         self.held_by = HeldBy.OBSTACLE
         self.gate_reason = ""
+        self.body_fault: BodyFault | None = None
+        self.can_recover = True
+        self.recoveries = 0
         self.in_the_way = ""
+
+    def recover_body(self) -> bool:
+        """Count it; the fault stays until the test takes it away."""
+        self.recoveries += 1
+        return self.can_recover
 
     def follow(self, path: Path) -> None:
         """Remember the path; the status becomes ``running``."""

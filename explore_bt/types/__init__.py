@@ -3,6 +3,7 @@
 Frames are REP-105's ``map → odom → base_link``, units REP-103's: metres, radians, seconds.
 """
 
+from explore_bt.types.body import BodyShape
 from explore_bt.types.budget import Budget
 from explore_bt.types.drawing import (
     Drawing,
@@ -13,6 +14,7 @@ from explore_bt.types.drawing import (
     ViewMark,
 )
 from explore_bt.types.estimate import Estimate, Health, Trajectory
+from explore_bt.types.fault import BodyFault, BodyFaultKind
 from explore_bt.types.grid import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
 from explore_bt.types.mate import Doing, Mate
 from explore_bt.types.measurement import (
@@ -36,6 +38,9 @@ __all__ = [
     "OCCUPIED",
     "UNKNOWN",
     "Battery",
+    "BodyFault",
+    "BodyFaultKind",
+    "BodyShape",
     "Budget",
     "Doing",
     "Drawing",

@@ -112,6 +112,17 @@ class OccupancyGrid:
         row, col = self.cell_of(x, y)
         return int(self.cells[row, col]) if self.contains_cell(row, col) else UNKNOWN
 
+    def window_around(self, x: float, y: float, reach_m: float) -> GridWindow:
+        """The cells within a square about a point, to ``reach_m`` on every side, as far as the grid goes."""
+        (row, col), reach = self.cell_of(x, y), math.ceil(reach_m / self.resolution_m)
+        rows, cols = self.cells.shape
+        return GridWindow(
+            min(max(row - reach, 0), rows),
+            min(max(col - reach, 0), cols),
+            min(max(row + reach + 1, 0), rows),
+            min(max(col + reach + 1, 0), cols),
+        )
+
     def center_of(self, row: int, col: int) -> tuple[float, float]:
         """(x, y) metres of a cell's centre."""
         return (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -79,6 +80,7 @@ class PointCloud:
         points: (N, 3) float32, metres, sensor frame; NaN rows are invalid returns.
         times_s: (N,) float64, each point's time relative to ``stamp_s`` (<= 0), seconds.
         T_base_sensor: (4, 4) float64, pose of the sensor in ``base_link``.
+        range_max_m: farther away it sees nothing; +inf where nobody said.
     """
 
     stamp_s: float
@@ -86,6 +88,7 @@ class PointCloud:
     times_s: NDArray[np.float64]
     T_base_sensor: NDArray[np.float64]
     frame: str = "lidar"
+    range_max_m: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)

@@ -71,6 +71,18 @@ def test_someone_in_the_way_is_waited_for_and_then_left_to_the_tree() -> None:
     assert not robot.avoided  # a person is no tight place
 
 
+def test_a_controller_that_gave_up_because_of_people_is_sent_on_along_the_same_path() -> None:
+    robot = FakeRobot(open_floor())
+    leaf = drive(robot)
+    robot.moving = (SOMEONE_NEAR,)
+    robot.pilot.report(ControlStatus.STUCK, "waiting for something that moves")
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING
+    assert robot.pilot.output.status is ControlStatus.RUNNING
+    first, again = robot.pilot.followed
+    assert again is first
+
+
 def test_a_way_that_someone_stands_in_is_asked_for_again() -> None:
     robot = FakeRobot(open_floor())
     robot.refusal, robot.moving = NoPath("no passage wide enough"), (SOMEONE_NEAR,)

@@ -12,6 +12,7 @@ from explore_bt.behaviours import (
     GiveUpGoal,
     RecordWaypoint,
     ResetHalfPlanes,
+    StandUp,
     StopRequested,
     TakeBack,
     Turn,
@@ -22,7 +23,17 @@ from explore_bt.behaviours import (
 from explore_bt.interfaces import ControlStatus
 from explore_bt.testing.fake_robot import FakeRobot, open_floor
 from explore_bt.tree import Blackboard, Leaf, Status
-from explore_bt.types import FREE, UNKNOWN, Estimate, Health, OccupancyGrid, Pose2, Waypoint
+from explore_bt.types import (
+    FREE,
+    UNKNOWN,
+    BodyFault,
+    BodyFaultKind,
+    Estimate,
+    Health,
+    OccupancyGrid,
+    Pose2,
+    Waypoint,
+)
 
 
 @pytest.fixture
@@ -191,3 +202,54 @@ def test_giving_up_writes_place_reason_and_what_was_expected(robot: FakeRobot, b
     leaf.tick_once()
     assert leaf.feedback_message == "(1.0, 2.0) is given up: held"
     assert board["given_up"] == (GivenUp((1.0, 2.0), "held", gain_m2=0.4),)
+
+
+FALLEN = BodyFault(BodyFaultKind.FALLEN, "the robot has fallen")
+
+
+def test_a_body_that_can_drive_is_left_alone(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = StandUp("stand up", robot, board)
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+    assert robot.pilot.recoveries == 0
+
+
+def test_a_fallen_robot_is_helped_up_once_and_waited_for(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = StandUp("stand up", robot, board)
+    robot.pilot.body_fault = FALLEN
+    for robot.time_s in (0.0, 1.0):
+        leaf.tick_once()
+        assert leaf.status is Status.RUNNING
+    robot.pilot.body_fault = BodyFault(BodyFaultKind.RECOVERING, "it is being stood up")
+    leaf.tick_once()
+    assert robot.pilot.recoveries == 1
+    assert leaf.feedback_message == "it is being stood up, for 1 s; is helped up"
+    robot.pilot.body_fault = None
+    leaf.tick_once()
+    assert leaf.status is Status.SUCCESS
+
+
+def test_a_robot_that_falls_again_and_again_is_given_up(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = StandUp("stand up", robot, board, {"times": 2, "patience": 5.0})
+    for _ in range(2):
+        robot.pilot.body_fault = FALLEN
+        leaf.tick_once()
+        robot.pilot.body_fault = None
+        leaf.tick_once()
+    robot.pilot.body_fault = FALLEN
+    leaf.tick_once()
+    robot.time_s += 5.0
+    leaf.tick_once()
+    assert leaf.status is Status.FAILURE
+    assert robot.pilot.recoveries == 2
+    assert "helped up 2 times already" in leaf.feedback_message
+
+
+def test_nobody_comes_to_a_robot_that_cannot_get_up(robot: FakeRobot, board: Blackboard) -> None:
+    leaf = StandUp("stand up", robot, board, {"patience": 5.0})
+    robot.pilot.body_fault, robot.pilot.can_recover = FALLEN, False
+    leaf.tick_once()
+    robot.time_s = 6.0
+    leaf.tick_once()
+    assert leaf.status is Status.FAILURE
+    assert "cannot get up by itself" in leaf.feedback_message

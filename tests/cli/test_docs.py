@@ -26,7 +26,7 @@ DOCS = [path for path in DOCS if path.is_file()]
 PLUGINS = (ROOT / "docs" / "plugins.md").read_text()
 CLI = (ROOT / "docs" / "cli.md").read_text()
 
-COMMAND = re.compile(r"explore-bt ([a-z][a-z-]*)((?: [^`\n|]*)?)")
+COMMAND = re.compile(r"explore-bt ([a-z][a-z0-9-]*)((?: [^`\n|]*)?)")
 
 
 def commands_in(path: Path) -> list[tuple[str, list[str]]]:

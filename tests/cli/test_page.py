@@ -16,7 +16,7 @@ import pytest
 from typer.testing import CliRunner
 
 from explore_bt.cli import app
-from explore_bt.cli.replay import find_recording
+from explore_bt.cli.recordings import find_recording
 from explore_bt.errors import UserError
 from explore_bt.recording import McapRecorder, read_recording
 from tests.cli.test_run import MISSION, WORLD

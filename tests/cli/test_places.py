@@ -64,7 +64,7 @@ def test_an_empty_folder_is_taken(tmp_path):
 def test_a_folder_with_anything_in_it_is_refused(tmp_path):
     (tmp_path / "map.yaml").write_text("mine")
     assert refusal(new_run_folder, tmp_path, "m") == (
-        f"{tmp_path} is not empty; a run never overwrites another, name a new folder with --out"
+        f"{tmp_path} is not empty; nothing is ever overwritten, name a new folder with --out"
     )
 
 

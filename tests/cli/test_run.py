@@ -175,7 +175,7 @@ def test_a_folder_that_holds_something_is_left_alone(folder):
     shown = run("--out", "out")
     assert (shown.exit_code, shown.stderr) == (
         2,
-        "out is not empty; a run never overwrites another, name a new folder with --out\n",
+        "out is not empty; nothing is ever overwritten, name a new folder with --out\n",
     )
     assert (folder / "out" / "map.yaml").read_text() == "mine"
 

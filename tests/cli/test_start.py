@@ -23,6 +23,7 @@ COMMANDS = (
     "export",
     "stats",
     "world",
+    "ros2-sim",
     "schema",
     "plugins",
     "new-plugin",

@@ -77,7 +77,7 @@ def price_of_place(world, k, x, y, v):
         spare = math.hypot(x - ox, y - oy) - reach
         price += prices.near * np.clip(1.0 - spare / band, 0.0, 1.0) ** 2
         if spare < 0.0:
-            price += (prices.touch - prices.depth * spare) * (0.3 + abs(haste))
+            price += (prices.touch - prices.depth * spare) * (0.02 + abs(haste))
     return price
 
 

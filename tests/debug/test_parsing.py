@@ -64,6 +64,7 @@ def test_a_span_is_ticks_or_seconds(text, expected):
 @pytest.mark.parametrize(
     ("parse", "text", "complaint"),
     [
+        (step_of, "''", 'there is no step ""'),
         (step_of, "nodde", 'did you mean "node"?'),
         (step_of, "5x", "write a whole number"),
         (breakpoint_of, "", "break where?"),

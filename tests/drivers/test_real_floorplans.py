@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 from explore_bt_drivers import Sim2d, Sim2dOptions
-from explore_bt_drivers.sim2d.start import choose_start
-from explore_bt_drivers.world import load_world
+from explore_bt_drivers.world import choose_start, load_world
 
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Pose2

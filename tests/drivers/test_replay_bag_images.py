@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from explore_bt_drivers import ReplayOptions
 from explore_bt_drivers.replay import open_log
-from explore_bt_drivers.replay.image_pairs import ImagePairs
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from explore_bt.cli import app
 from explore_bt.errors import LogError
+from explore_bt.ros_messages import ImagePairs
 from explore_bt.testing.slam_camera import RoomCamera, filmed
 from explore_bt.testing.slam_room import Room, ScriptedRobot
 from explore_bt.types import Pose2, RgbdFrame, Scan2D

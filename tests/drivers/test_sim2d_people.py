@@ -278,3 +278,17 @@ def test_touches_are_those_of_a_search_through_all_steps(tmp_path: Path) -> None
     assert contacts > 3
     assert stood > 3
     assert counts(driver) == (contacts, stood)
+
+
+@pytest.mark.parametrize(
+    ("material", "ahead_m"), [("matt", 2.0), ("mirror", 2.0 + 2.0 + 3.0 - 0.3), ("glass", 4.0 - 0.2)]
+)
+def test_people_are_seen_through_glass_and_in_mirrors(tmp_path: Path, material: str, ahead_m: float) -> None:
+    ada = "{name: ada, route: [[-3, 0], [-3, 0.1]], radius: 0.3, begin: 1 h}"
+    bob = "{name: bob, route: [[4, 0], [4, 0.1]], radius: 0.2, begin: 1 h}"
+    path = field(tmp_path, f"[{ada}, {bob}]")
+    pane = f"walls: [{{path: [[2.05, -1], [2.05, 1]], material: {material}}}]\n"
+    path.write_text(path.read_text() + pane)
+    scan = scans(drive(ready(path, noise=False, beams=360, lidar_range=9), Twist2(), 0.1))[0]
+    assert scan.ranges_m[180] == pytest.approx(ahead_m, abs=1e-5)
+    assert scan.ranges_m[0] == pytest.approx(2.7, abs=1e-5)

@@ -4,7 +4,7 @@ import itertools
 import math
 
 import numpy as np
-from explore_bt_drivers.sim2d.strides import ACCELERATION_MPS2, TURN_MPS, as_people_walk
+from explore_bt_drivers.people.strides import ACCELERATION_MPS2, TURN_MPS, as_people_walk
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -145,6 +146,15 @@ def test_limits_only_ever_make_the_body_slower() -> None:
     limits = LimitsSpec(speed_mps=0.2, jerk_mps3=99.0).apply(MotionLimits())
     assert limits.speed_mps == 0.2
     assert limits.jerk_mps3 == MotionLimits().jerk_mps3
+
+
+def test_the_brake_is_as_gentle_as_the_drive_unless_the_mission_says_so() -> None:
+    body = MotionLimits(acceleration_mps2=2.0, jerk_mps3=20.0)
+    gentle = LimitsSpec(acceleration_mps2=0.5, jerk_mps3=2.0)
+    assert gentle.of_brake(body) == gentle.apply(body)
+    firm = replace(gentle, braking_mps2=1.5, braking_jerk_mps3=99.0).of_brake(body)
+    assert (firm.acceleration_mps2, firm.jerk_mps3) == (1.5, 20.0)
+    assert firm.turn_acceleration_rps2 == body.turn_acceleration_rps2
 
 
 def test_a_file_that_a_plugin_needs_must_be_there(load, good, tmp_path) -> None:

@@ -59,7 +59,7 @@ def drive_through(
     driver.setup(RobotContext(robot="robot", seed=0))
     limits = mission.limits.apply(driver.limits)
     controller.setup(RobotContext(robot="robot", seed=0, footprint_radius_m=RADIUS, limits=limits))
-    pilot = Pilot(controller, SafetyGate(RADIUS, limits), driver)
+    pilot = Pilot(controller, SafetyGate(RADIUS, limits), driver, limits)
     truth = driver.truth()
     assert truth is not None
     rng = np.random.default_rng(0)

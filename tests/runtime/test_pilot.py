@@ -3,15 +3,27 @@ from typing import cast
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from explore_bt.interfaces import Controller, ControlOutput, ControlStatus, Driver, HeldBy, Surroundings
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.safety_gate import SafetyGate
 from explore_bt.testing.fake_robot import full_circle_scan, open_floor
-from explore_bt.types import Estimate, MotionLimits, Path, Pose2, Twist2
+from explore_bt.types import (
+    BodyFault,
+    BodyFaultKind,
+    Estimate,
+    MotionLimits,
+    MotionState,
+    Path,
+    Pose2,
+    Twist2,
+)
+
+from .conftest import DT, LIMITS, towards
 
 FLOOR = open_floor()
-DT = 0.05
 POST = np.array([[0.25, 0.0]])
 
 
@@ -32,16 +44,32 @@ class StraightOn:
         return ControlOutput(Twist2(0.01, 0.0), ControlStatus.RUNNING)
 
 
+class Off(StraightOn):
+    """Wants half a metre a second, under the usual limits."""
+
+    def step(self, estimate: object, scan: object, motion: MotionState, dt_s: float) -> ControlOutput:
+        return ControlOutput(towards(Twist2(0.5, 0.0), motion), ControlStatus.RUNNING)
+
+
 class Wheels:
     command_delay_s = 0.0
+    fault: BodyFault | None = None
 
     def command(self, twist: Twist2) -> None:
         """Nothing hangs on it."""
 
+    def hindrance(self) -> str:
+        return ""
+
 
 @pytest.fixture
 def pilot() -> Pilot:
-    return Pilot(cast(Controller, StraightOn()), SafetyGate(0.25, MotionLimits()), cast(Driver, Wheels()))
+    return Pilot(
+        cast(Controller, StraightOn()),
+        SafetyGate(0.25, MotionLimits()),
+        cast(Driver, Wheels()),
+        MotionLimits(),
+    )
 
 
 def show(pilot: Pilot, stamp_s: float, pose: Pose2, points: np.ndarray) -> Estimate:
@@ -111,3 +139,55 @@ def test_a_pause_does_not_count_as_being_blocked(pilot: Pilot) -> None:
         pilot.pause("held", 1.6 + DT * i, DT)
     assert pilot.blocked_s == pytest.approx(before_s)
     assert before_s > 0.0
+
+
+def test_a_body_that_cannot_drive_is_held_and_named(pilot: Pilot) -> None:
+    wheels = cast(Wheels, pilot._driver)
+    wheels.fault = BodyFault(BodyFaultKind.FALLEN, "the robot has fallen")
+    pilot.step(Estimate(0.0, Pose2(0.0, 0.0, 0.0)), full_circle_scan(), 0.0, DT)
+    assert pilot.held_by is HeldBy.BODY
+    assert pilot.gate_reason == "the robot has fallen"
+    assert pilot.motion.twist == Twist2()
+
+
+@given(st.integers(5, 60), st.integers(1, 12))
+@settings(deadline=None, max_examples=60)
+def test_a_brake_firmer_than_the_drive_keeps_its_own_limits_and_never_rolls_back(
+    before: int, held: int
+) -> None:
+    firm = replace(LIMITS, acceleration_mps2=2.5, jerk_mps3=30.0)
+    pilot = Pilot(cast(Controller, Off()), SafetyGate(0.25, firm), cast(Driver, Wheels()), LIMITS)
+    blind = replace(full_circle_scan(), ranges_m=np.full(360, np.nan, dtype=np.float32))
+    speeds, held_at = [0.0], []
+    for i in range(before + held + 60):
+        is_held = before <= i < before + held
+        estimate = show(pilot, DT * i, Pose2(0.0, 0.0, 0.0), np.zeros((0, 2)))
+        scan = replace(blind if is_held else full_circle_scan(), stamp_s=DT * i)
+        pilot.step(estimate, scan, DT * i, DT)
+        speeds.append(pilot.motion.twist.linear_mps)
+        held_at.append(is_held)
+    accelerations = np.diff(speeds) / DT
+    jerks = np.diff(accelerations) / DT
+    assert min(speeds) > -0.002
+    assert np.abs(accelerations).max() <= 2.5 + 1e-6
+    assert np.abs(jerks).max() <= 30.0 + 1e-6
+    let_go = before + held + 2
+    assert min(speeds[let_go:]) > speeds[let_go] - 0.5**2 / (2.0 * 2.0)  # what levelling off costs
+
+
+def test_a_command_that_may_stay_in_force_for_longer_is_checked_for_as_long(pilot: Pilot) -> None:
+    wall = np.array([[0.6, 0.01 * n] for n in range(-60, 61)])
+    limits = MotionLimits()
+
+    def distance_at_hold(in_force_s: float) -> float:
+        """How far ahead of a wall at x = 0.6 m a gate lets a robot of 0.25 m drive at 0.2 m/s."""
+        gate = SafetyGate(0.25, limits)
+        motion = MotionState(Twist2(0.2, 0.0))
+        for x in np.arange(0.0, 0.3, 0.005):
+            gate.see(Surroundings(0.0, wall - [x, 0.0], FLOOR), Pose2(0.0, 0.0, 0.0))
+            if gate.decide(Twist2(0.2, 0.0), Pose2(0.0, 0.0, 0.0), motion, 0.05, 0.0, in_force_s).reason:
+                return float(0.6 - x)
+        raise AssertionError("never held")
+
+    longer_m = distance_at_hold(0.25) - distance_at_hold(0.05)
+    assert 0.2 * 0.2 - 0.006 <= longer_m <= 0.2 * 0.2 + 0.006

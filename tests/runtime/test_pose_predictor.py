@@ -32,6 +32,27 @@ def test_what_a_lagging_body_still_has_to_drive_counts_as_driven() -> None:
     assert predicted.T_map_base.x == pytest.approx(0.4 * (0.5 + 0.025))
 
 
+def test_a_lagging_body_is_carried_to_where_it_is_and_not_to_where_it_will_be() -> None:
+    """The same commands, driven late, give the poses and twists that ``carry`` and ``twist_at`` tell."""
+    lag, late = 4, PosePredictor(delay_s=4 * DT)
+    motion, pose, poses, twists = MotionState(), Pose2(0.0, 0.0, 0.0), [], []
+    sent = [MotionState(Twist2(0.02 * step, 0.04 * step)) for step in range(25)]
+    for step, following in enumerate(sent):
+        poses.append(pose)
+        twists.append(motion.twist)
+        late.sent(step * DT, motion, following)
+        pose, motion = _finely_integrated(pose, motion.twist, following.twist), following
+    for begin, end in ((10, 20), (15, 24)):
+        estimate = Estimate(begin * DT, poses[begin - lag])
+        carried = late.carry(estimate, end * DT)
+        np.testing.assert_allclose(carried.T_map_base.as_array(), poses[end - lag].as_array(), atol=2e-3)
+        assert late.twist_at(end * DT).angular_rps == pytest.approx(twists[end - lag].angular_rps)
+
+
+def test_a_body_that_was_told_nothing_stands() -> None:
+    assert PosePredictor(0.2).twist_at(3.0) == Twist2()
+
+
 def _finely_integrated(pose: Pose2, before: Twist2, after: Twist2) -> Pose2:
     x, y, yaw = pose.x, pose.y, pose.yaw_rad
     for share in (np.arange(100) + 0.5) / 100:

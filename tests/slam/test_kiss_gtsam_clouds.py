@@ -1,20 +1,23 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import math
 from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from explore_bt_slam import KissGtsam, attitude, level_cloud, projection, virtual_scan, voxel_kernels
+from explore_bt_slam import KissGtsam, projection, voxel_kernels
 from pydantic import ValidationError
 
+from explore_bt import levelling
+from explore_bt.errors import PluginError
 from explore_bt.interfaces import RobotContext
 from explore_bt.testing.balancing_robot import BalancingRobot
 from explore_bt.testing.scene3 import Prism, Scene3
 from explore_bt.testing.slam_room import Room, ScriptedRobot
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, Imu, Measurement, PointCloud, Pose2
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, BodyShape, Imu, Measurement, PointCloud, Pose2
 
 
 def box(x0: float, y0: float, x1: float, y1: float, low: float = 0.0, high: float = 2.5) -> Prism:
@@ -123,7 +126,7 @@ def test_voxels_and_graph_are_handed_out() -> None:
 
 
 @pytest.mark.parametrize(
-    "options", [{"floor_height": "1 m"}, {"robot_height": "3 m"}, {"match_low": "0.5 m", "match_high": 0.5}]
+    "options", [{"floor_height": "3 m"}, {"robot_height": "3 m"}, {"match_low": "0.5 m", "match_high": 0.5}]
 )
 def test_bands_upside_down_are_refused_by_name(options: dict[str, object]) -> None:
     with pytest.raises(ValidationError, match="has to be the higher one"):
@@ -160,8 +163,46 @@ def test_no_kernel_compiles_while_the_robot_drives() -> None:
     assert _signatures() == before
 
 
+def test_a_robot_that_is_lower_than_the_floor_band_is_refused_at_set_up() -> None:
+    slam = KissGtsam(KissGtsam.Options(floor_height="0.6 m"))
+    with pytest.raises(PluginError, match=r"the robot 0\.5 m high, as its driver says"):
+        slam.setup(RobotContext(start=Pose2(0.0, 0.0, 0.0), shape=BodyShape(height_m=0.5)))
+
+
+def test_the_driver_s_word_on_the_body_s_height_counts() -> None:
+    """A table top at 0.66 m is an obstacle to a robot of 1 m and none to one of 0.5 m."""
+    known = {}
+    for height_m in (0.5, 1.0):
+        robot = swinging(Pose2(3.5, 0.0, 0.5))
+        slam = KissGtsam(KissGtsam.Options())
+        slam.setup(RobotContext(start=robot.pose, shape=BodyShape(height_m=height_m)))
+        drive(slam, robot.drive(0.0, 0.0, 1.0), robot.turn(2.0 * math.pi))
+        known[height_m] = slam.grid().value_at(4.6, 1.1)
+    assert known[1.0] == OCCUPIED
+    assert known[0.5] != OCCUPIED
+
+
+def test_floor_about_the_start_is_believed_where_nothing_is_seen_on_it_and_not_behind_walls() -> None:
+    """A lidar at 0.5 m sees no floor nearer than 1.9 m; what is behind the wall stays unknown."""
+    known = {}
+    for clear_m in (0.0, 1.0):
+        robot = BalancingRobot(two_rooms(), Pose2(-2.6, 0.0, 0.0))
+        slam = ready(robot, clear_start=clear_m, robot_height="1.5 m")
+        drive(slam, robot.drive(0.0, 0.0, 1.0))
+        known[clear_m] = slam.grid()
+    assert known[0.0].value_at(-2.1, 0.2) == UNKNOWN
+    assert known[1.0].value_at(-2.1, 0.2) == FREE
+    assert known[1.0].value_at(-3.3, 0.0) != FREE
+    assert known[1.0].value_at(-3.02, 0.0) == OCCUPIED
+
+
 def _signatures() -> dict[str, int]:
     """How many versions of each kernel there are by now."""
-    modules = (attitude, level_cloud, virtual_scan, voxel_kernels, projection)
+    parts = ("attitude", "level_cloud", "virtual_scan")
+    modules = (
+        *(importlib.import_module(f"{levelling.__name__}.{part}") for part in parts),
+        voxel_kernels,
+        projection,
+    )
     kernels = [getattr(module, name) for module in modules for name in vars(module)]
     return {f"{k.__module__}.{k.__name__}": len(k.signatures) for k in kernels if hasattr(k, "signatures")}

@@ -2,11 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from explore_bt_slam.level_cloud import LevelCloud
 from explore_bt_slam.voxel_map import Heights, VoxelMap
 from explore_bt_slam.voxel_mapper import VoxelMapper
 from numpy.typing import NDArray
 
+from explore_bt.levelling import LevelCloud
 from explore_bt.types import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
 
 STILL = np.zeros(2)

@@ -70,3 +70,25 @@ def test_a_moved_window_marks_the_cells_moved(window: GridWindow, rows: int, col
     expected = np.zeros((30, 30), dtype=np.uint8)
     expected[rows : rows + 20, cols : cols + 20] = marked(window)
     np.testing.assert_array_equal(marked(window.moved(rows, cols), (30, 30)), expected)
+
+
+@given(
+    st.integers(1, 30),
+    st.integers(1, 30),
+    st.floats(-3.0, 3.0),
+    st.floats(-3.0, 3.0),
+    st.floats(0.01, 2.0),
+)
+def test_the_window_around_a_point_holds_every_cell_whose_centre_is_that_near(
+    rows: int, cols: int, x: float, y: float, reach_m: float
+) -> None:
+    grid = OccupancyGrid(np.zeros((rows, cols), dtype=np.int8), 0.05, (-0.7, 0.3))
+    window = grid.window_around(x, y, reach_m)
+    inside = np.zeros(grid.shape, dtype=bool)
+    inside[window.slices] = True
+    cells = np.argwhere(np.ones(grid.shape, dtype=bool))
+    off_m = np.abs(grid.centers_of(cells) - (x, y)).max(axis=1).reshape(grid.shape)
+    assert inside[off_m <= reach_m].all()
+    assert not inside[off_m > reach_m + 1.5 * grid.resolution_m].any()
+    assert 0 <= window.row0 <= window.row1 <= rows
+    assert 0 <= window.col0 <= window.col1 <= cols

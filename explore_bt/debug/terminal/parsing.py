@@ -52,7 +52,7 @@ def step_of(rest: str) -> Step:
     """``[N] [tick|node|change]`` in any order."""
     count, kind = 1, StepKind.TICK
     for word in words_of(rest):
-        if word[0].isdigit():
+        if word[:1].isdigit():
             count = number_of(word, "a number of steps")
             continue
         name = word.lower().removesuffix("s")

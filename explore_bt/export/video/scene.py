@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.recording import RecordedMessage, decode_grid
+from explore_bt.recording import RecordedMessage, decode_grid, decode_pose
 from explore_bt.types import OccupancyGrid, Pose2
 
 __all__ = ["NODE", "RobotScene", "Scene"]
@@ -71,7 +70,7 @@ class Scene:
 
 def _take(robot: RobotScene, topic: str, value: dict[str, Any]) -> None:
     if topic == "pose":
-        robot.pose = _pose(value["pose"])
+        robot.pose = decode_pose(value["pose"])
         robot.trail.append(robot.pose.xy)
     elif topic == "tree":
         for node in value["nodes"]:
@@ -93,16 +92,9 @@ def _take(robot: RobotScene, topic: str, value: dict[str, Any]) -> None:
         robot.state = value
 
 
-def _pose(value: dict[str, Any]) -> Pose2:
-    place, turn = value["position"], value["orientation"]
-    if place["x"] is None:
-        return Pose2(math.nan, math.nan, math.nan)
-    return Pose2(place["x"], place["y"], 2.0 * math.atan2(turn["z"], turn["w"]))
-
-
 def _returns(value: dict[str, Any]) -> NDArray[np.float64]:
     ranges = np.array(value["ranges"], dtype=np.float64)  # null is NaN
     angles = np.linspace(value["start_angle"], value["end_angle"], len(ranges))
     is_return = np.isfinite(ranges)
     points = (ranges * np.vstack((np.cos(angles), np.sin(angles)))).T[is_return]
-    return np.asarray(_pose(value["pose"]).apply(points))
+    return np.asarray(decode_pose(value["pose"]).apply(points))

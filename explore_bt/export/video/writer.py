@@ -1,21 +1,15 @@
-"""Frames into an MP4 file."""
+"""A recording as a film in an MP4 file."""
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-import cv2
-
-from explore_bt.errors import UserError
 from explore_bt.export.video.film import HEIGHT, WIDTH, film, frame_count
+from explore_bt.export.video.mp4 import Mp4Writer
 from explore_bt.recording import Recording
 
 __all__ = ["write_video"]
-
-_CODEC = "vp09"  # of what OpenCV's wheel can write, what browsers and players of today show
 
 
 def write_video(
@@ -39,33 +33,11 @@ def write_video(
         UserError: this build of OpenCV cannot write such files.
         OSError: the folder cannot be written.
     """
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=".mp4", dir=path.parent)
-    os.close(handle)
-    try:
-        _write(recording, temporary, rate_hz, speed, on_frame)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-    return path
-
-
-def _write(
-    recording: Recording, name: str, rate_hz: float, speed: float, on_frame: Callable[[int, int], None] | None
-) -> None:
-    writer = cv2.VideoWriter(name, cv2.VideoWriter.fourcc(*_CODEC), rate_hz, (WIDTH, HEIGHT))
-    if not writer.isOpened():
-        raise UserError(
-            "this build of OpenCV cannot write VP9 in MP4; "
-            "type: pip install --force-reinstall opencv-python-headless"
-        )
-    try:
-        step_s = speed / rate_hz
-        total = frame_count(recording, step_s)
+    step_s = speed / rate_hz
+    total = frame_count(recording, step_s)
+    with Mp4Writer(path, rate_hz, (WIDTH, HEIGHT)) as writer:
         for index, frame in enumerate(film(recording, step_s)):
-            writer.write(cv2.cvtColor(frame, cv2.COLOR_RGB2BGR))
+            writer.write(frame)
             if on_frame is not None:
                 on_frame(index + 1, total)
-    finally:
-        writer.release()
+    return path

@@ -52,16 +52,16 @@ class MppiOptions(FollowerOptions):
     speed_noise: Speed = Field(0.1, gt=0.0, description="standard deviation of the sampled velocities")
     turn_noise: AngularRate = Field(0.4, gt=0.0, description="standard deviation of the sampled turn rates")
     noise_time: Duration = Field(0.3, gt=0.0, description="time over which sampled velocities hang together")
-    reverse_speed: Speed = Field(0.1, ge=0.0, description="greatest velocity backwards")
+    reverse_speed: Speed = Field(0.0, ge=0.0, description="greatest velocity backwards")
     deviation: Length = Field(1.0, gt=0.0, description="how far from the path it drives around obstacles")
     margin: Length = Field(0.03, ge=0.0, description="least room beside the footprint")
     soft_margin: Length = Field(
         0.25, gt=0.0, description="room beside the footprint under which speed has its price"
     )
-    moving_margin: Length = Field(0.15, ge=0.0, description="least distance from what moves")
+    moving_margin: Length = Field(0.02, ge=0.0, description="least distance from what moves")
     moving_soft_margin: Length = Field(
-        0.4, gt=0.0, description="distance from what moves that it likes to keep"
+        0.1, gt=0.0, description="distance from what moves that it likes to keep"
     )
     moving_doubt: Speed = Field(
-        0.3, ge=0.0, description="growth of that distance per second of looking ahead"
+        0.0, ge=0.0, description="growth of that distance per second of looking ahead"
     )

@@ -16,7 +16,7 @@ _BLOCK = 128  # samples rolled out together: their state stays in the nearest ca
 _DEVIATION_M = 0.15  # offset at which deviating costs half of its price
 _SLOW_MPS = 0.05  # places to be driven no faster are alike
 _LEAST_SHRINK = 0.3  # of 1 - curvature · offset: beyond it the projection would jump
-_AT_REST = 0.3  # part of the price of being touched that is due at rest too
+_AT_REST = 0.02  # part of the price of being touched that is due at rest too
 
 
 class Start(NamedTuple):

@@ -21,6 +21,7 @@ __all__ = ["SampledLaw"]
 _BRAKE_SHARE = 0.5  # of the acceleration, for the speed wanted ahead of slow places: jerk takes the rest
 _LOYALTY = 0.1  # by which another plan must be cheaper than the one pursued
 _BROKEN_OFF_S = 0.3  # after a pause as long as this the last plan is of no use
+_WAITING_MPS = 0.05
 _LOOK_M = 1.5  # along the path, for what is tight or in the way
 _SQUEEZE_M = 0.02  # nearer than the path's own clearance: the map's cells are as coarse
 _LEAST_MARGIN_M = -0.03  # the safety gate has the last word
@@ -55,7 +56,12 @@ class SampledLaw:
         self._plan, self._place = plan, place
         fastest = self._speeds.fastest(place.leg, place.along_m, limits.speed_mps, motion, limits, dt_s)
         linear = min(next_linear(float(plan[0, 0]), motion, limits, dt_s), fastest)
-        return Wish(linear, float(plan[1, 0]))
+        return Wish(linear, self._turn_rate(float(plan[1, 0]), linear, place))
+
+    def _turn_rate(self, rate_rps: float, linear_mps: float, place: Place) -> float:
+        """Who waits for people turns to the path only: else they dance about the robot, and it with them."""
+        waits = abs(linear_mps) < _WAITING_MPS and bool(self._nearby.moving)
+        return 0.0 if waits and rate_rps * place.heading_error_rad >= 0.0 else rate_rps
 
     def hindrance(self) -> str:
         """See ``DrivingLaw.hindrance``."""

@@ -5,22 +5,23 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.errors import PluginError
 from explore_bt.interfaces import RobotContext
-from explore_bt.types import Health, Imu, MapStructure, PointCloud, Pose2, Voxels
-from explore_bt_slam.attitude import AttitudeFilter
+from explore_bt.levelling import AttitudeFilter, LevelCloud, fault_of_cloud, level, level_frame, virtual_scan
+from explore_bt.types import BodyShape, Health, Imu, MapStructure, PointCloud, Pose2, RgbdFrame, Voxels
 from explore_bt_slam.front_end import Registered
 from explore_bt_slam.graph_distance import relative_covariances
-from explore_bt_slam.level_cloud import LevelCloud, fault_of_cloud, level
 from explore_bt_slam.options import KissGtsamOptions
 from explore_bt_slam.pipeline import Pipeline
 from explore_bt_slam.sweep import Sweep
-from explore_bt_slam.virtual_scan import virtual_scan
 from explore_bt_slam.voxel_map import Heights
 from explore_bt_slam.voxel_mapper import VoxelMapper
 
 __all__ = ["CloudPipeline"]
 
 _SPEED_SIGMA_MPS = 0.1
+_SEEN_FOR_S = 1.5
+"""So long is a speed that the camera has seen good for telling tilt from acceleration."""
 _SURE_M = 0.05
 _KNOWN_OVERLAP = 0.8
 _SAME_PLACE = 0.6
@@ -31,9 +32,15 @@ class CloudPipeline(Pipeline):
 
     def __init__(self, options: KissGtsamOptions, context: RobotContext, revision: int = 0) -> None:
         super().__init__(options, context)
-        heights = Heights(options.floor_height, options.robot_height, options.map_height)
+        heights = _heights(options, context.shape)
+        self._base_m = context.shape.base_height_m if options.base_height is None else options.base_height
         self.voxel_mapper = VoxelMapper(
-            options.resolution, context.footprint_radius_m, heights, options.max_range, revision
+            options.resolution,
+            context.footprint_radius_m,
+            heights,
+            options.max_range,
+            revision,
+            options.clear_start,
         )
         self.mapper = self.voxel_mapper
         self.mapper.begin(self._start, Pose2.identity())
@@ -51,6 +58,10 @@ class CloudPipeline(Pipeline):
             imu = self._attitude.take_imu(imu)
         super().take_imu(imu)
 
+    def take_image(self, frame: RgbdFrame) -> None:
+        """An image, from a camera that leans with the body."""
+        super().take_image(level_frame(frame, self._attitude, self._base_m))
+
     def take_cloud(self, cloud: PointCloud) -> None:
         """One sweep, all the way to the map."""
         fault = fault_of_cloud(cloud)
@@ -58,14 +69,20 @@ class CloudPipeline(Pipeline):
             self.health.bad(cloud.stamp_s, fault)
             return
         options = self._options
-        levelled = level(cloud, self._attitude, options.base_height, options.max_range)
+        levelled = level(cloud, self._attitude, self._base_m, options.max_range)
         self._cloud = levelled
         self.take_scan(virtual_scan(levelled, options.match_low, options.match_high, options.max_range))
         self._cloud = None
-        if self.health.state[0] is Health.OK:
+        is_seen = cloud.stamp_s - self.seen_s <= _SEEN_FOR_S
+        if self.health.state[0] is Health.OK or is_seen:
             self._attitude.correct(self.front.velocity_mps, _SPEED_SIGMA_MPS)
         else:
             self._attitude.correct(np.zeros(2), self._speed_limit_mps)
+
+    def pick_up(self) -> None:
+        """What the IMU told before is no word on which way is down now."""
+        super().pick_up()
+        self._attitude.stand()
 
     def figures(self) -> dict[str, float]:
         """Also submaps, and megabytes of voxels."""
@@ -90,6 +107,8 @@ class CloudPipeline(Pipeline):
         elif old != self._keyframe:
             self._relative = self.back.pose(old).between(self._scan_pose)
             self._keyframe = old
+            if self.camera is not None:
+                self.camera.forget()  # what it has seen belongs to the keyframe before
             self.front.relocate(*self.back.surroundings(old))
 
     def _stands_here(self, registered: Registered) -> int | None:
@@ -119,3 +138,18 @@ class CloudPipeline(Pipeline):
             spread = np.sqrt(covariances[:, 0, 0] + covariances[:, 1, 1])
             self._known_at, self._known_now = state, spread <= _SURE_M
         return self._known_now
+
+
+def _heights(options: KissGtsamOptions, shape: BodyShape) -> Heights:
+    """The bands; a robot is as high as the options say, else as its driver says.
+
+    Raises:
+        PluginError: it would not reach above the floor.
+    """
+    robot_m = shape.height_m if options.robot_height is None else options.robot_height
+    if robot_m <= options.floor_height:
+        raise PluginError(
+            f"kiss_gtsam: floor_height is {options.floor_height:g} m and the robot {robot_m:g} m high, as its"
+            " driver says; lower floor_height, or say robot_height"
+        )
+    return Heights(options.floor_height, robot_m, max(options.map_height, robot_m))

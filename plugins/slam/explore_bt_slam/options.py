@@ -28,12 +28,22 @@ class KissGtsamOptions(GroundTruthOptions):
     voxel: Length = Field(0.1, gt=0.0, description="cell of kiss-icp's map")
     loop_closures: bool = Field(True, description="close loops from the lidar")
     camera_closures: bool = Field(True, description="close loops from RGB-D images, if there are any")
-    base_height: Length = Field(0.0, description="base_link above the floor; the body pitches about it")
+    base_height: Length | None = Field(
+        None,
+        description="base_link above the floor; by default as the driver says",
+    )
     floor_height: Length = Field(0.1, gt=0.0, description="3D lidar: what is lower counts as floor")
-    robot_height: Length = Field(1.0, gt=0.0, description="3D lidar: what is higher is passed under")
+    robot_height: Length | None = Field(
+        None, gt=0.0, description="3D lidar: what is higher is passed under; by default as the driver says"
+    )
     map_height: Length = Field(2.0, gt=0.0, description="3D lidar: what is higher is not kept")
     match_low: Length = Field(0.3, description="3D lidar: what is lower is not registered")
     match_high: Length = Field(2.0, description="3D lidar: what is higher is not registered")
+    clear_start: Length = Field(
+        0.0,
+        ge=0.0,
+        description="3D lidar: floor about the start that is taken for free where nothing is seen on it",
+    )
     use_odometry: bool = Field(False, description="trust the wheels for the speed between scans")
 
     @model_validator(mode="after")
@@ -41,8 +51,11 @@ class KissGtsamOptions(GroundTruthOptions):
         for low, high in (
             ("floor_height", "robot_height"),
             ("robot_height", "map_height"),
+            ("floor_height", "map_height"),
             ("match_low", "match_high"),
         ):
+            if getattr(self, low) is None or getattr(self, high) is None:
+                continue
             below, above = float(getattr(self, low)), float(getattr(self, high))
             if below > above or (below == above and high != "map_height"):
                 raise ValueError(

@@ -33,6 +33,14 @@ from explore_bt_slam.sweep import Sweep
 __all__ = ["Pipeline"]
 
 _BACKWARDS_S = 0.05
+_LOOK_S = 0.5
+"""While the lidar leaves a direction open, an image is looked at so often."""
+_SEEN_SHARE = 0.6
+"""Of the way between keyframes: the views of two keyframes farther apart have too little in common."""
+_UNRECOGNISED_S = 1.5
+"""After so long without a view that is like the last keyframe's there is a new one."""
+_SPEED_ERROR_MPS = 0.3
+"""What the filter may be wrong by where only the IMU speaks, whatever it claims."""
 
 
 class Pipeline:
@@ -40,6 +48,9 @@ class Pipeline:
 
     The robot is where it stands from a keyframe, plus the predicted motion since the last scan; so when
     the graph moves, everything moves along.
+
+    Attributes:
+        seen_s: when the camera last said how fast the robot goes.
     """
 
     def __init__(self, options: KissGtsamOptions, context: RobotContext) -> None:
@@ -59,6 +70,7 @@ class Pipeline:
         self._start = start
         self._keyframe = -1
         self._weak_keyframes = 0
+        self._looked_s = self.seen_s = -np.inf
         self._relative = Pose2.identity()
         self._scan_s = -np.inf
         self._covariance: tuple[int, int, NDArray[np.float64]] = (-1, 0, np.zeros((3, 3)))
@@ -120,7 +132,7 @@ class Pipeline:
         self._relative = self.back.pose(self._keyframe).between(registered.pose)
         self._judge(registered)
         if registered.fits:
-            if self._rule.wants(self._relative, registered.overlap):
+            if self._rule.wants(self._relative, registered.overlap) or self._is_carried_along(registered):
                 self._make_keyframe(registered)
             self._draw(registered.sweep)
         elif self.health.state[0] is Health.LOST:
@@ -201,6 +213,23 @@ class Pipeline:
         self.front.relocate(*self.back.surroundings(self._keyframe))
         self.mapper.follow(self.back.poses)
 
+    def _is_carried_along(self, registered: Registered) -> bool:
+        """Whether the camera sees the robot move while the lidar leaves a direction open.
+
+        A robot that takes itself for slow, or for standing, by an error of its speed would make no keyframe,
+        and without one no step would be seen that mends the error.
+        """
+        stamp_s = registered.sweep.stamp_s
+        if not registered.weakness or self.camera is None or stamp_s - self._looked_s < _LOOK_S:
+            return False
+        self._looked_s = stamp_s
+        since_s = stamp_s - self.back.keyframes[self._keyframe].stamp_s
+        look = self.camera.look(self._relative)
+        if look.match is None:
+            return look.is_rich and since_s >= _UNRECOGNISED_S
+        step = look.match.relative
+        return float(np.hypot(step.x, step.y)) >= _SEEN_SHARE * self._rule.distance_m
+
     def _seen_step(
         self, camera: Camera, stamp_s: float, covariance: NDArray[np.float64]
     ) -> NDArray[np.float64]:
@@ -212,11 +241,12 @@ class Pipeline:
             The step's covariance, new keyframe's axes.
         """
         step = camera.step() if self._weak_keyframes else None
-        fused = fuse_step(self._relative, covariance, step) if step else None
+        span_s = stamp_s - self.back.keyframes[self._keyframe].stamp_s
+        fused = fuse_step(self._relative, covariance, step, _SPEED_ERROR_MPS * span_s) if step else None
         if fused is None:
             return covariance
         relative, covariance = fused
-        span_s = stamp_s - self.back.keyframes[self._keyframe].stamp_s
+        self.seen_s = stamp_s
         self.front.take_step(relative.x - self._relative.x, span_s, math.sqrt(float(covariance[0, 0])))
         self._relative = relative
         self._weak_keyframes = 0

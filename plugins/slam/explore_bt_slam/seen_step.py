@@ -17,7 +17,7 @@ does not know of an accelerometer that suddenly feels what is not there."""
 
 
 def fuse_step(
-    relative: Pose2, covariance: NDArray[np.float64], seen: SightMatch
+    relative: Pose2, covariance: NDArray[np.float64], seen: SightMatch, open_m: float = 0.0
 ) -> tuple[Pose2, NDArray[np.float64]] | None:
     """Both together, weighted by their information (Bar-Shalom et al. 2001); None if they contradict.
 
@@ -25,6 +25,7 @@ def fuse_step(
         relative: ``T_last_new`` by lidar and IMU, with one direction left open.
         covariance: (3, 3) float64 of it over x, y (m²), yaw (rad²), axes of the new keyframe.
         seen: the same by the camera.
+        open_m: standard deviation that the open direction has at least, if that is more than 10 cm.
 
     Returns:
         Step and covariance, as they came.
@@ -32,7 +33,7 @@ def fuse_step(
     cos, sin = np.cos(relative.yaw_rad), np.sin(relative.yaw_rad)
     turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     variances, directions = np.linalg.eigh(turn @ covariance @ turn.T)
-    variances[-1] = max(variances[-1], _OPEN_M**2)
+    variances[-1] = max(variances[-1], _OPEN_M**2, open_m**2)
     ours = (directions * variances) @ directions.T
     off = seen.relative.as_array() - relative.as_array()
     off[2] = wrap_angle(float(off[2]))

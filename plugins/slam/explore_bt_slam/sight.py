@@ -50,7 +50,10 @@ class SightMaker:
             frame: taken at ``T_keyframe_base`` with the robot level.
             T_keyframe_base: where the robot was, seen from the keyframe.
         """
-        keypoints, descriptors = self._orb.detectAndCompute(frame.grey, None)
+        # features without depth are of no use, and the strongest ones are often far off: ask for others
+        with np.errstate(invalid="ignore"):
+            is_placed = (frame.depth_m >= _NEAR_M) & (frame.depth_m <= _FAR_M)
+        keypoints, descriptors = self._orb.detectAndCompute(frame.grey, is_placed.astype(np.uint8))
         if descriptors is None:
             return Sight(np.zeros((0, 32), np.uint8), np.zeros((0, 3), np.float32), np.zeros(0, np.float32))
         pixels = np.array([keypoint.pt for keypoint in keypoints])

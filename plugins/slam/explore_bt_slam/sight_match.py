@@ -14,11 +14,12 @@ from explore_bt.types import Pose2
 from explore_bt_slam.arrays import Bools, Floats
 from explore_bt_slam.sight import Sight
 
-__all__ = ["SightMatch", "match_sights"]
+__all__ = ["FEWEST", "SightMatch", "match_sights"]
 
 _NEAR_BITS = 60
 _MOST_PAIRS = 80
-_FEWEST = 15
+FEWEST = 15
+"""So many features have to agree."""
 _BASELINE_M = 0.4
 _SLACK_M = 0.03
 _COMMON = np.diag([0.015, 0.015, 0.005]) ** 2
@@ -46,7 +47,7 @@ def match_sights(old: Sight, new: Sight) -> SightMatch | None:
     The robot stands level, so a motion has three unknowns and two matches give it. With at most 80 matches
     every pair of them is tried: RANSAC without dice (Fischler and Bolles 1981). Heights must agree too.
     """
-    if min(old.points.shape[0], new.points.shape[0]) < _FEWEST:
+    if min(old.points.shape[0], new.points.shape[0]) < FEWEST:
         return None
     matches = cv2.BFMatcher(cv2.NORM_HAMMING, crossCheck=True).match(new.descriptors, old.descriptors)
     near = sorted(
@@ -59,7 +60,7 @@ def match_sights(old: Sight, new: Sight) -> SightMatch | None:
     a, b, sigmas = a[level, :2], b[level, :2], sigmas[level]
     agreeing = _largest_agreement(a, b, 3.0 * sigmas + _SLACK_M, _BASELINE_M)
     for _ in range(2):
-        if np.count_nonzero(agreeing) < _FEWEST:
+        if np.count_nonzero(agreeing) < FEWEST:
             return None
         relative = _fit(a[agreeing], b[agreeing], sigmas[agreeing] ** -2.0)
         agreeing = np.linalg.norm(relative.apply(b) - a, axis=1) <= 3.0 * sigmas + _SLACK_M

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.levelling import LevelCloud, virtual_scan
 from explore_bt.types import GridWindow, Pose2
-from explore_bt_slam.level_cloud import LevelCloud
 from explore_bt_slam.projection import mark_columns, project
 from explore_bt_slam.voxel_kernels import BRICK, DECISIVE, allocate, take_in, trace
 
@@ -64,14 +64,22 @@ class VoxelMap:
             ``lidar_m``, along x or y, is not taken in.
         heights: of floor and obstacle band.
         body_radius_m: the floor under the robot's disc is known, though no beam reaches it.
+        clear_start_m: so is that of a disc of this radius at the first sweep, as far as the lidar sees.
     """
 
     def __init__(
-        self, cell_m: float, lidar_m: float, wander_m: float, heights: Heights, body_radius_m: float
+        self,
+        cell_m: float,
+        lidar_m: float,
+        wander_m: float,
+        heights: Heights,
+        body_radius_m: float,
+        clear_start_m: float = 0.0,
     ) -> None:
         self.cell_m = cell_m
         self.submaps: list[Submap] = []
         self._body_m = body_radius_m
+        self._clear_start_m, self._heights = clear_start_m, heights
         self._bottom_m = -math.ceil(_BELOW_FLOOR_M / cell_m) * cell_m
         low, high, top = (
             round((height - self._bottom_m) / cell_m)
@@ -123,7 +131,10 @@ class VoxelMap:
         depth_m = _SURFACE_DEPTH * self.cell_m
         scratch, touched = self._scratch, self._touched
         trace(origins, ends, pose.as_array(), corner, self.cell_m, depth_m, scratch, touched)
-        self._stand((pose.x - corner[0], pose.y - corner[1]))
+        at_m = (pose.x - corner[0], pose.y - corner[1])
+        self._know(self._disc(at_m, self._body_m))
+        if self._uses == 0 and self._clear_start_m > 0.0:
+            self._know(self._disc(at_m, self._clear_start_m) & self._in_sight(cloud, at_m, pose.yaw_rad))
         self._bricks = allocate(touched, row0, col0, self._tables[slot], self._bricks)
         if self._bricks > self._pool.shape[0]:
             more = np.zeros((max(self._bricks, 3 * self._pool.shape[0] // 2), *self._pool.shape[1:]), np.int8)
@@ -227,14 +238,31 @@ class VoxelMap:
         first = math.floor(centre_m / self.cell_m) + self._half - self._box // 2
         return min(max(first, 0), 2 * self._half - self._box)
 
-    def _stand(self, at_m: tuple[float, float]) -> None:
-        """The robot's disc: floor below it, nothing in the band but itself."""
-        x, y = (value / self.cell_m for value in at_m)
+    def _disc(self, at_m: tuple[float, float], radius_m: float) -> NDArray[np.bool_]:
+        """Columns of the scratch box about a place in it."""
+        across, along = self._off(at_m)
+        return np.asarray(across**2 + along**2 <= radius_m**2)
+
+    def _off(self, at_m: tuple[float, float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """How far the columns of the scratch box are from a place in it, along x and y, metres."""
         rows, cols = np.ogrid[: self._box, : self._box]
-        under = (cols + 0.5 - x) ** 2 + (rows + 0.5 - y) ** 2 <= (self._body_m / self.cell_m) ** 2
-        band = self._scratch[under]
+        return (cols + 0.5) * self.cell_m - at_m[0], (rows + 0.5) * self.cell_m - at_m[1]
+
+    def _in_sight(self, cloud: LevelCloud, at_m: tuple[float, float], yaw_rad: float) -> NDArray[np.bool_]:
+        """Columns of the scratch box with nothing in the band before or in them, seen from a place."""
+        reach_m = self._box * self.cell_m
+        scan = virtual_scan(cloud, self._heights.low_m, self._heights.high_m, reach_m)
+        free_m = np.where(np.isnan(scan.ranges_m), 0.0, scan.ranges_m) - self.cell_m
+        x, y = self._off(at_m)
+        bearings = np.mod(np.arctan2(y, x) - yaw_rad + math.pi, 2.0 * math.pi)
+        beams = np.minimum((bearings / (2.0 * math.pi) * len(free_m)).astype(np.int64), len(free_m) - 1)
+        return np.asarray(np.hypot(x, y) < free_m[beams])
+
+    def _know(self, columns: NDArray[np.bool_]) -> None:
+        """Floor below these columns, nothing in the band but what the sweep struck."""
+        band = self._scratch[columns]
         band[:, round(-self._bottom_m / self.cell_m)] = 2
         body = band[:, self._low : self._high]
         body[body == 0] = 1
-        self._scratch[under] = band
-        self._touched |= under
+        self._scratch[columns] = band
+        self._touched |= columns

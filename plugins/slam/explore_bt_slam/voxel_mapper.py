@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.levelling import LevelCloud
 from explore_bt.types import GridWindow, Pose2
 from explore_bt_slam.canvas import Canvas
-from explore_bt_slam.level_cloud import LevelCloud
 from explore_bt_slam.mapper import KeptSweep, Mapper, apart, has_moved
 from explore_bt_slam.voxel_map import Columns, Heights, VoxelMap
 
@@ -33,15 +33,22 @@ class VoxelMapper(Mapper):
         heights: of floor and obstacle band.
         reach_m: range of the lidar.
         revision: of the grid that this one takes the place of.
+        clear_start_m: floor about the start that is known, though no beam reaches it.
     """
 
     def __init__(
-        self, resolution_m: float, body_radius_m: float, heights: Heights, reach_m: float, revision: int
+        self,
+        resolution_m: float,
+        body_radius_m: float,
+        heights: Heights,
+        reach_m: float,
+        revision: int,
+        clear_start_m: float = 0.0,
     ) -> None:
         super().__init__(resolution_m, body_radius_m)
         self._canvas = Canvas(resolution_m, body_radius_m, revision)
         self.voxels = VoxelMap(
-            resolution_m, reach_m + _LEVER_M, _SUBMAP_EVERY_M + 1.0, heights, body_radius_m
+            resolution_m, reach_m + _LEVER_M, _SUBMAP_EVERY_M + 1.0, heights, body_radius_m, clear_start_m
         )
         self._active = -1
         self._drawn_poses = np.zeros((0, 3))

@@ -11,11 +11,17 @@ from typing import Any
 import numpy as np
 
 from explore_bt.errors import LogError
+from explore_bt.ros_messages import (
+    CAMERA_INFO,
+    IMAGE,
+    MESSAGES,
+    TRANSFORMS,
+    CameraStream,
+    Mountings,
+    choose_camera,
+)
 from explore_bt.types import Measurement, RgbdFrame
-from explore_bt_drivers.replay.bag_camera import CAMERA_INFO, IMAGE, BagCamera, choose_camera
-from explore_bt_drivers.replay.bag_messages import MESSAGES, TRANSFORMS
 from explore_bt_drivers.replay.log import MeasurementLog
-from explore_bt_drivers.replay.mountings import Mountings
 
 __all__ = ["BagLog"]
 
@@ -115,7 +121,7 @@ class BagLog(MeasurementLog):
                 self.notes += [f"{topic} is not played: {topics[kind][0]} is" for topic in topics[kind][1:]]
         return chosen
 
-    def _camera(self, bag: Any, mountings: Mountings) -> BagCamera | None:
+    def _camera(self, bag: Any, mountings: Mountings) -> CameraStream | None:
         images, infos = (_topics(bag.connections, kind) for kind in (IMAGE, CAMERA_INFO))
         for topic in filter(None, self._image_topics):
             if topic not in images:
@@ -130,7 +136,7 @@ class BagLog(MeasurementLog):
         chosen = choose_camera(images, infos, self._image_topics, first_of, self.notes)
         if chosen is None and any(self._image_topics):
             raise LogError(f"{self.path}: {self.notes[-1]}")
-        return BagCamera(chosen, mountings, self.notes) if chosen else None
+        return CameraStream(chosen, mountings, self.notes) if chosen else None
 
     def _only(self, topics: Sequence[str], hint: str) -> str:
         if len(topics) > 1:
@@ -178,7 +184,7 @@ class BagLog(MeasurementLog):
         with self._told(connection):
             return MESSAGES[connection.msgtype](message, mountings, self._range_max_m)
 
-    def _frame(self, camera: BagCamera, connection: Any, message: Any) -> RgbdFrame | None:
+    def _frame(self, camera: CameraStream, connection: Any, message: Any) -> RgbdFrame | None:
         with self._told(connection):
             return camera.take(connection.topic, message)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from explore_bt.errors import LogCutOff, LogError
-from explore_bt.recording import RecordedMessage, decode_measurements, read_recording
+from explore_bt.recording import RecordedMessage, decode_measurements, decode_pose, read_recording
 from explore_bt.types import Measurement, PointCloud, Pose2, Scan2D
 from explore_bt_drivers.replay.log import MeasurementLog
 
@@ -84,8 +84,7 @@ class RecordingLog(MeasurementLog):
 def _pose(message: RecordedMessage) -> Pose2 | None:
     """Of a ``foxglove.PoseInFrame``; None where nothing was known."""
     try:
-        position, turn = message.value["pose"]["position"], message.value["pose"]["orientation"]
-        yaw_rad = 2.0 * math.atan2(turn["z"], turn["w"])
-        return Pose2(float(position["x"]), float(position["y"]), yaw_rad)
+        pose = decode_pose(message.value["pose"])
     except (KeyError, TypeError, ValueError):
         return None
+    return pose if math.isfinite(pose.x) else None

@@ -11,8 +11,7 @@ from explore_bt.types import OccupancyGrid
 from explore_bt_drivers.sim2d.body import Body
 from explore_bt_drivers.sim2d.bumps import Bumps
 from explore_bt_drivers.sim2d.motion import ON_STEP, STEP_S
-from explore_bt_drivers.sim2d.scenery import Scenery
-from explore_bt_drivers.world import World, observable_floor
+from explore_bt_drivers.world import Scenery, World, observable_floor
 from explore_bt_drivers.world.observable import reachable_cells
 
 __all__ = ["Arena", "Dweller"]
@@ -54,7 +53,7 @@ class Arena(ManualClock):
         self.bodies: list[Body] = []
         self._dwellers: list[Dweller] = []
         self._step = math.floor(begin_s / STEP_S + ON_STEP)
-        self._scenery = Scenery(world)
+        self._scenery = Scenery(world, STEP_S)
         self._bumps = Bumps(self.bodies)
         self._floors: dict[Hashable, OccupancyGrid] = {}
 

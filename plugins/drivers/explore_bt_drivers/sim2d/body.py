@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 import math
-import threading
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import MotionLimits, Pose2, Twist2, wrap_angle
+from explore_bt_drivers.orders import Orders
 from explore_bt_drivers.sim2d.motion import ACC, ON_STEP, STEP_S, V, X, Y, advance, states_at
 from explore_bt_drivers.world import World
 
-__all__ = ["Body", "Ramp", "Track"]
+__all__ = ["Body", "Track"]
 
-_WATCHDOG_STEPS = round(0.5 / STEP_S)
-_USUAL_PERIOD_STEPS = round(0.05 / STEP_S)
-_LONGEST_PERIOD_STEPS = round(0.2 / STEP_S)
 _ROOM_STEPS = 4096
 _MEMORY_STEPS = 512
 """States that stay when the track is moved up: more than the longest sweep (2 s) needs."""
-
-Ramp = tuple[float, float, int, int, float]
-"""A set-point: begin, end, first internal step, number of steps, and where it may come to rest."""
 
 
 class Track:
@@ -67,27 +60,10 @@ class Track:
         return out
 
 
-@dataclass(frozen=True, slots=True)
-class _Order:
-    """The command in force: set-points of both axes, their slopes, and the step it came at."""
-
-    twist: Twist2
-    linear: Ramp
-    angular: Ramp
-    slopes: tuple[float, float]
-    step: int
-
-
-_STILL: Ramp = (0.0, 0.0, 0, 0, 0.0)
-_HALT = _Order(Twist2(), _STILL, _STILL, (0.0, 0.0), 0)
-
-
 class Body:
     """A unicycle under limits of speed, acceleration and jerk, with a circular footprint.
 
-    A twist that is within the limits as seen from the commands before it is reached along a straight
-    ramp over one command period, since another is likely to follow; any other is reached as fast as the
-    limits allow, without passing it. Half a second after the last command the body halts.
+    See ``Orders`` for how commands become set-points.
 
     ``command`` and ``advance`` belong to one thread; ``halt`` may be called from any.
 
@@ -107,7 +83,8 @@ class Body:
         self.world = world
         self.radius_m = radius_m
         self.has_stepped_back = False
-        self._limits = limits
+        self.speed_limit_mps = limits.speed_mps
+        self._orders = Orders(limits, STEP_S)
         self._limit_values = (
             limits.speed_mps,
             limits.acceleration_mps2,
@@ -117,8 +94,6 @@ class Body:
             limits.turn_jerk_rps3,
         )
         self._touching = False
-        self._order = _HALT
-        self._lock = threading.Lock()
 
     @property
     def pose(self) -> Pose2:
@@ -132,47 +107,14 @@ class Body:
         x, y = self.track.now[:2].tolist()
         return (x, y)
 
-    @property
-    def speed_limit_mps(self) -> float:
-        """It is never faster."""
-        return self._limits.speed_mps
-
     def command(self, twist: Twist2) -> None:
         """Go for a twist from the next internal step on."""
-        limits = self._limits
-        wanted = Twist2(
-            min(max(twist.linear_mps, -limits.speed_mps), limits.speed_mps),
-            min(max(twist.angular_rps, -limits.turn_rate_rps), limits.turn_rate_rps),
-        )
-        step = self.track.last_step
-        with self._lock:
-            last = self._order
-            if last is _HALT:
-                _, _, _, v, acceleration, w, turn_acceleration = self.track.now.tolist()
-                before, slopes, steps = Twist2(v, w), (acceleration, turn_acceleration), _USUAL_PERIOD_STEPS
-            else:
-                before, slopes = last.twist, last.slopes
-                steps = min(max(step - last.step, 1), _LONGEST_PERIOD_STEPS)
-            linear, slope = _ramp(
-                before.linear_mps,
-                wanted.linear_mps,
-                slopes[0],
-                (step, steps),
-                (limits.acceleration_mps2, limits.jerk_mps3),
-            )
-            angular, turn_slope = _ramp(
-                before.angular_rps,
-                wanted.angular_rps,
-                slopes[1],
-                (step, steps),
-                (limits.turn_acceleration_rps2, limits.turn_jerk_rps3),
-            )
-            self._order = _Order(wanted, linear, angular, (slope, turn_slope), step)
+        _, _, _, v, acceleration, w, turn_acceleration = self.track.now.tolist()
+        self._orders.command(twist, self.track.last_step, (v, acceleration, w, turn_acceleration))
 
     def halt(self) -> None:
         """Brake as the limits allow and stand until the next command."""
-        with self._lock:
-            self._order = _HALT
+        self._orders.halt()
 
     def step_back(self) -> None:
         """Something stands in the way: the newest internal step is not made, but for its turn."""
@@ -186,12 +128,9 @@ class Body:
     def advance(self, last_step: int) -> None:
         """Move on to an internal step."""
         while self.track.last_step < last_step:
-            order, step = self._order, self.track.last_step
-            alarm = order.step + _WATCHDOG_STEPS
-            if order is not _HALT and step >= alarm:
-                self.halt()
-                continue
-            until = last_step if order is _HALT else min(last_step, alarm)
+            step = self.track.last_step
+            order = self._orders.at(step)
+            until = self._orders.until(order, last_step)
             states, row, count = self.track.room(until - step)
             self._touching, touches = advance(
                 self.world.index,
@@ -207,20 +146,3 @@ class Body:
             )
             self.contacts += touches
             self.track.last_step += count
-
-
-def _ramp(
-    begin: float, end: float, slope_before: float, when: tuple[int, int], limits: tuple[float, float]
-) -> tuple[Ramp, float]:
-    """The set-point's way to a new command, and its slope; a jump where the limits forbid a ramp."""
-    step, steps = when
-    acceleration, jerk = limits
-    period_s = steps * STEP_S
-    slope = (end - begin) / period_s
-    change = abs(slope - slope_before)
-    if abs(slope) <= 1.01 * acceleration and change <= 1.05 * jerk * period_s + 1e-9:
-        # under the same jerk the slope can die away over this much more velocity, counted from its end
-        dying = max(abs(slope) - 0.5 * jerk * period_s, 0.0)
-        rest = end + math.copysign(0.5 * dying * dying / jerk, slope)
-        return (begin, end, step, steps, rest), slope
-    return (end, end, step, 0, end), slope

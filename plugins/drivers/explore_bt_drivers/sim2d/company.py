@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt_drivers.people.ways import Ways
 from explore_bt_drivers.sim2d.body import Body, Track
-from explore_bt_drivers.sim2d.discs import Ways, cast_at_discs
 from explore_bt_drivers.sim2d.motion import STEP_S, X, Y
 
 __all__ = ["Company"]
@@ -22,29 +22,17 @@ class Company:
         """Look out for these, and for those who join them; the robot itself is told apart by its track."""
         self._bodies = bodies
 
-    def cast(
-        self,
-        track: Track,
-        stamp_s: float,
-        times_s: NDArray[np.float64],
-        angles_rad: NDArray[np.float64],
-        limit_m: float,
-        ranges_m: NDArray[np.float64],
-    ) -> NDArray[np.bool_] | None:
-        """Shorten the ranges of a sweep where another robot is in the way.
+    def ways(self, track: Track, begin_s: float, end_s: float, limit_m: float) -> Ways | None:
+        """Where those that may be in sight went between two times; None where none is near.
 
-        Returns:
-            (N,) bool: the beams that now end at a robot; None where none is near.
+        Args:
+            track: of the robot that looks.
+            begin_s: of a sweep.
+            end_s: of the same.
+            limit_m: how far its lidar sees.
         """
         others = [body for body in self._bodies if body.track is not track and _is_near(body, track, limit_m)]
-        if not others:
-            return None
-        ways = _ways_of(others, stamp_s + float(times_s[0]), stamp_s)
-        return np.asarray(
-            cast_at_discs(
-                ways, track.states, track.first_step, stamp_s, times_s, angles_rad, limit_m, ranges_m
-            )
-        )
+        return _ways_of(others, begin_s, end_s) if others else None
 
 
 def _is_near(body: Body, track: Track, limit_m: float) -> bool:

@@ -6,22 +6,19 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from explore_bt.clock import Clock
-from explore_bt.errors import WorldError
-from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, Resumption, RobotContext
+from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, RobotContext
 from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt_drivers.people import Crowd
 from explore_bt_drivers.sim2d.arena import Arena
-from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.sim2d.simulation import Simulation
 from explore_bt_drivers.sim2d.truth import Sim2dTruth
 from explore_bt_drivers.sim2d.venue import Venue
-from explore_bt_drivers.world import World, observable_floor
+from explore_bt_drivers.world import World, observable_floor, stand_of
 
 __all__ = ["Sim2d"]
 
 _WARM_UP_S = 0.2
-_MENDED_M = 0.02
-"""So much nearer to a thing may a pose that went through a recording be."""
 
 
 class Sim2d(Driver):
@@ -56,13 +53,13 @@ class Sim2d(Driver):
         venue = Venue.of(options, context)
         world, arena = venue.world, venue.arena
         self._start = venue.start(options, context)
-        stand = _stand(world, context.resumed, options.radius) or self._start
+        stand = stand_of(world, context.resumed, options.radius) or self._start
         _rehearse(world, options, stand, context, venue.crowd(options, context, self._start))
         observable_floor(world, self._start.xy, options.radius, 0.0)
         crowd = venue.crowd(options, context, self._start)
         self._arena = arena
         self._simulation = Simulation(arena, options, stand, context, crowd)
-        self._truth = Sim2dTruth(arena, self._start, self._simulation.body, crowd, options.lidar_range)
+        self._truth = Sim2dTruth(arena, self._start, self._simulation, options.lidar_range)
 
     @property
     def clock(self) -> Clock:
@@ -128,21 +125,3 @@ def _rehearse(world: World, options: Sim2dOptions, stand: Pose2, context: RobotC
     rehearsal = Simulation(arena, options, stand, context, crowd)
     rehearsal.body.command(Twist2(0.1, 0.1))
     arena.wait_until(arena.now_s() + _WARM_UP_S)
-
-
-def _stand(world: World, resumed: Resumption | None, radius_m: float) -> Pose2 | None:
-    """Where a resumed run left the robot; None for one that begins.
-
-    Raises:
-        WorldError: something stands there now.
-    """
-    if resumed is None:
-        return None
-    stand = resumed.true_pose or resumed.pose
-    clearance_m, thing = world.nearest_thing(stand.x, stand.y)
-    if clearance_m < radius_m - _MENDED_M and not world.things:  # things stand elsewhere by then
-        raise WorldError(
-            f"{world.source}: the run broke off at ({stand.x:.2f}, {stand.y:.2f}), {clearance_m:.2f} m from "
-            f"{thing} as it stands now; the robot's radius is {radius_m:g} m. Give the world as it was"
-        )
-    return stand

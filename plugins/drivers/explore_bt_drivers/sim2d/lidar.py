@@ -3,40 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from explore_bt.types import Scan2D
+from explore_bt_drivers.people import Crowd
+from explore_bt_drivers.people.ways import Ways, disc_ahead, joined
 from explore_bt_drivers.sim2d.body import Track
+from explore_bt_drivers.sim2d.company import Company
 from explore_bt_drivers.sim2d.motion import YAW, X, Y, place_at, value_at
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.world import World
-from explore_bt_drivers.world.index import cast_ray
+from explore_bt_drivers.world.index import MIRROR, MOST_MIRRORS, first_hit, reflected
 
 __all__ = ["Lidar"]
 
 _RANGE_MIN_M = 0.02
 _TAIL = 4.0
 """Noise can bring a return from beyond the range back into it: look that many sigmas further."""
-
-
-class _PassersBy(Protocol):
-    """Who may be in the way of beams: people, other robots."""
-
-    def cast(
-        self,
-        track: Track,
-        stamp_s: float,
-        times_s: NDArray[np.float64],
-        angles_rad: NDArray[np.float64],
-        limit_m: float,
-        ranges_m: NDArray[np.float64],
-    ) -> NDArray[np.bool_] | None:
-        """Shorten the ranges of a sweep; the beams that now end there, None where nobody is about."""
 
 
 class Lidar:
@@ -52,10 +37,12 @@ class Lidar:
         options: Sim2dOptions,
         rng: np.random.Generator,
         dropout_rng: np.random.Generator,
-        passers_by: Sequence[_PassersBy],
+        crowd: Crowd,
+        company: Company,
     ) -> None:
         self.world = world
-        self._passers_by = passers_by
+        self._crowd = crowd
+        self._company = company
         self._rate_hz = options.lidar_rate
         self._range_m = options.lidar_range
         self._noise_m = options.range_noise if options.noise else 0.0
@@ -82,28 +69,68 @@ class Lidar:
         ranges = np.empty(len(self._angles), dtype=np.float64)
         reach = self._range_m + _TAIL * self._noise_m
         index, states = self.world.index, track.states
-        _cast_sweep(index, states, track.first_step, stamp_s, self._times, self._angles, reach, ranges)
-        about = [
-            each.cast(track, stamp_s, self._times, self._angles, reach, ranges) for each in self._passers_by
-        ]
+        shown = _cast_sweep(
+            index,
+            self._ways(track, stamp_s, reach),
+            states,
+            track.first_step,
+            stamp_s,
+            self._times,
+            self._angles,
+            reach,
+            ranges,
+        )
         if self._noise_m > 0.0:
             ranges += self._rng.normal(0.0, self._noise_m, len(ranges))
         ranges[ranges > self._range_m] = math.inf
-        for shown in about:  # people come nearer than walls do, even into the lidar
-            if shown is not None:
-                ranges[shown & (ranges < _RANGE_MIN_M)] = math.nan
+        # people and robots come nearer than walls do, even into the lidar
+        ranges[shown & (ranges < _RANGE_MIN_M)] = math.nan
         if self._dropout > 0.0:
             ranges[self._dropout_rng.random(len(ranges)) < self._dropout] = math.nan
         measured = ranges.astype(np.float32)
         measured.flags.writeable = False
         return Scan2D(stamp_s, self._angles, measured, self._times, _RANGE_MIN_M, self._range_m)
 
+    def _ways(self, track: Track, stamp_s: float, reach_m: float) -> Ways:
+        """Of people and other robots during a sweep."""
+        robots = self._company.ways(track, stamp_s + float(self._times[0]), stamp_s, reach_m)
+        return self._crowd.ways if robots is None else joined(self._crowd.ways, robots)
+
 
 @njit(cache=True)
-def _cast_sweep(index, states, first_step, stamp, times, angles, limit, out):  # type: ignore[no-untyped-def]  # kernel
-    """Exact ranges of a sweep, each beam cast from the pose at its own time."""
+def _cast_sweep(index, ways, states, first_step, stamp, times, angles, limit, out):  # type: ignore[no-untyped-def]  # kernel
+    """Exact ranges of a sweep; robot and people are where they are at each beam's own time.
+
+    Returns:
+        (N,) bool: the beams that end at a person.
+    """
+    shown = np.zeros(angles.shape[0], dtype=np.bool_)
+    alone = ways.radii.shape[0] == 0
     for i in range(angles.shape[0]):
         row, share = place_at(stamp + times[i], first_step, states.shape[0])
         x, y = value_at(states, row, share, X), value_at(states, row, share, Y)
         direction = value_at(states, row, share, YAW) + angles[i]
-        out[i] = cast_ray(index, x, y, math.cos(direction), math.sin(direction), limit)
+        dx, dy = math.cos(direction), math.sin(direction)
+        wall, last = first_hit(index, x, y, dx, dy, limit)
+        if alone and (last < 0 or index.materials[last] != MIRROR):
+            out[i] = wall
+        else:
+            out[i], shown[i] = _beam(index, ways, stamp + times[i], x, y, dx, dy, limit)
+    return shown
+
+
+@njit(cache=True)
+def _beam(index, ways, time, x, y, dx, dy, limit):  # type: ignore[no-untyped-def]  # kernel
+    """Length of a beam by way of mirrors, and whether it ends at a person."""
+    driven, last = 0.0, -1
+    for _ in range(MOST_MIRRORS):
+        wall, last = first_hit(index, x, y, dx, dy, limit - driven, last)
+        person = disc_ahead(ways, time, x, y, dx, dy, limit - driven)
+        if person < wall:
+            return driven + person, True
+        driven += wall
+        if last < 0 or index.materials[last] != MIRROR:
+            return driven, False
+        x, y = x + wall * dx, y + wall * dy
+        dx, dy = reflected(index.segments, last, dx, dy)
+    return math.inf, False

@@ -6,6 +6,7 @@ import math
 
 from numba import njit
 
+from explore_bt_drivers.orders import driven
 from explore_bt_drivers.world.index import nearest
 
 __all__ = [
@@ -52,8 +53,8 @@ def advance(index, states, row, count, step, linear, angular, limits, radius, to
     contacts = 0
     for k in range(row, row + count):
         x, y, yaw, v, acc, w, turn_acc = states[k]
-        acc_next = _driven(linear, step, v, acc, limits[0], limits[1], limits[2])
-        turn_acc_next = _driven(angular, step, w, turn_acc, limits[3], limits[4], limits[5])
+        acc_next = driven(linear, step, v, acc, limits[:3], dt)
+        turn_acc_next = driven(angular, step, w, turn_acc, limits[3:], dt)
         v_next = v + 0.5 * (acc + acc_next) * dt
         w_next = w + 0.5 * (turn_acc + turn_acc_next) * dt
         x_next, y_next, yaw_next = _arc(x, y, yaw, 0.5 * (v + v_next) * dt, 0.5 * (w + w_next) * dt)
@@ -68,61 +69,6 @@ def advance(index, states, row, count, step, linear, angular, limits, radius, to
         states[k + 1] = (x_next, y_next, yaw_next, v_next, acc_next, w_next, turn_acc_next)
         step += 1
     return touching, contacts
-
-
-@njit(cache=True)
-def _driven(ramp, step, v, a, v_max, a_max, jerk):  # type: ignore[no-untyped-def]  # kernel
-    """Acceleration of one axis at the end of this step under its ramp."""
-    goal, after = _ramp_at(ramp, step), _ramp_at(ramp, step + 1)
-    slope = (after - goal) / STEP_S
-    return _next_acceleration(v, a, goal, slope, ramp[4], v_max, a_max, jerk, STEP_S)
-
-
-@njit(cache=True)
-def _largest_landing(gap, jerk, dt):  # type: ignore[no-untyped-def]  # kernel
-    """The largest acceleration at the end of this step from which the gap is closed without overshoot.
-
-    ``gap`` >= 0 is what remains of the way in velocity when half of this step's acceleration is spent.
-    With constant jerk over each step, coming down from (n + f) jerk dt spends
-    jerk dt² n (n + 1) / 2 + f jerk dt² (n + 1); this is the inverse of that.
-    """
-    unit = jerk * dt * dt
-    n = math.floor((math.sqrt(1.0 + 8.0 * gap / unit) - 1.0) / 2.0)
-    rest = (gap - unit * n * (n + 1) / 2.0) / (unit * (n + 1))
-    return (n + rest) * jerk * dt
-
-
-@njit(cache=True)
-def _landing(gap, jerk, dt):  # type: ignore[no-untyped-def]  # kernel
-    return math.copysign(_largest_landing(abs(gap), jerk, dt), gap)
-
-
-@njit(cache=True)
-def _ramp_at(ramp, step):  # type: ignore[no-untyped-def]  # kernel
-    """Set-point of a ramp at an internal step."""
-    begin, end, first, steps, _ = ramp
-    if steps <= 0 or step >= first + steps:
-        return end
-    return begin + (end - begin) * (step - first) / steps
-
-
-@njit(cache=True)
-def _next_acceleration(v, a, goal, slope, rest, v_max, a_max, jerk, dt):  # type: ignore[no-untyped-def]  # kernel
-    """Acceleration at the end of this step; it changes evenly over the step.
-
-    The axis closes in on a set-point that stands at ``goal`` and moves at ``slope``, as fast as the
-    limits let it and without passing it, nor ``rest``, where the set-point will come to rest at the
-    earliest; it never enters a state that must break the speed limit. ``v`` and ``a`` are the state now;
-    limits are > 0; SI throughout.
-    """
-    wanted = slope + _landing(goal - v - 0.5 * (a - slope) * dt, jerk, dt)
-    if slope != 0.0:
-        bound = _landing(rest - v - 0.5 * a * dt, jerk, dt)
-        wanted = min(wanted, bound) if slope > 0.0 else max(wanted, bound)
-    highest = _landing(v_max - v - 0.5 * a * dt, jerk, dt)
-    lowest = -_landing(v_max + v + 0.5 * a * dt, jerk, dt)
-    wanted = min(max(wanted, lowest, -a_max), highest, a_max)
-    return min(max(wanted, a - jerk * dt), a + jerk * dt)
 
 
 @njit(cache=True)

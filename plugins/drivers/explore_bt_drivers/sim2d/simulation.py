@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Measurement, Pose2
+from explore_bt_drivers.battery import BatteryGauge
+from explore_bt_drivers.people import Crowd
 from explore_bt_drivers.sim2d.arena import Arena
-from explore_bt_drivers.sim2d.battery import BatteryGauge
 from explore_bt_drivers.sim2d.body import Body
 from explore_bt_drivers.sim2d.company import Company
-from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.imu import InertialUnit
 from explore_bt_drivers.sim2d.lidar import Lidar
+from explore_bt_drivers.sim2d.motion import STEP_S
 from explore_bt_drivers.sim2d.odometry import Wheels
 from explore_bt_drivers.sim2d.options import Sim2dOptions
+from explore_bt_drivers.sim2d.touches import Touches
 from explore_bt_drivers.world import World
 
 __all__ = ["Simulation"]
@@ -27,8 +29,15 @@ class Simulation:
         world = arena.world
         self.body = Body(world, start, options.radius, options.limits, arena.step)
         self.crowd = crowd
-        seen_by_lidar = (crowd, Company(arena.bodies))
-        self._lidar = Lidar(world, options, context.rng("lidar"), context.rng("lidar dropout"), seen_by_lidar)
+        self.touches = Touches(crowd, options.radius)
+        self._lidar = Lidar(
+            world,
+            options,
+            context.rng("lidar"),
+            context.rng("lidar dropout"),
+            crowd,
+            Company(arena.bodies),
+        )
         self._sensors = (
             InertialUnit(options, context.rng("imu")),
             Wheels(options, start, context.rng("wheels")),
@@ -47,9 +56,9 @@ class Simulation:
     def advance(self, last_step: int) -> None:
         """Move on to an internal step, people too."""
         step = self.body.track.last_step
-        self.crowd.foresee(last_step)
+        self.crowd.foresee(last_step * STEP_S)
         self.body.advance(last_step)
-        self.crowd.meet(self.body.track, step)
+        self.touches.follow(self.body.track, step)
 
     def measure(self) -> None:
         """Take what the sensors have to tell by now."""

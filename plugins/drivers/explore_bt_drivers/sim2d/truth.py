@@ -10,23 +10,20 @@ from numpy.typing import NDArray
 from explore_bt.interfaces import GroundTruth
 from explore_bt.types import OccupancyGrid, Pose2
 from explore_bt_drivers.sim2d.arena import Arena
-from explore_bt_drivers.sim2d.body import Body
-from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.motion import STEP_S
+from explore_bt_drivers.sim2d.simulation import Simulation
+from explore_bt_drivers.world import SPARE_M
 
-__all__ = ["SPARE_M", "Sim2dTruth"]
-
-SPARE_M = 0.025
-"""A way counts only if it leaves this much on either side: through an exact fit no lidar guides a robot."""
+__all__ = ["Sim2dTruth"]
 
 
 class Sim2dTruth(GroundTruth):
     """Reads the body, the crowd and the world; changes nothing."""
 
-    def __init__(self, arena: Arena, start: Pose2, body: Body, crowd: Crowd, range_m: float) -> None:
+    def __init__(self, arena: Arena, start: Pose2, simulation: Simulation, range_m: float) -> None:
         self._arena = arena
-        self._body = body
-        self._crowd = crowd
+        self._body = simulation.body
+        self._crowd, self._touches = simulation.crowd, simulation.touches
         self._range_m = range_m
         self._start = start
 
@@ -40,7 +37,7 @@ class Sim2dTruth(GroundTruth):
         Of things, of other robots, and of people where the robot moved faster than 0.05 m/s at some moment
         of the touch.
         """
-        return self._body.contacts + self._crowd.contacts
+        return self._body.contacts + self._touches.met
 
     def clearance_m(self) -> float:
         """Exact distance from the robot's centre to the nearest solid of now, metres; not to who moves."""
@@ -53,7 +50,7 @@ class Sim2dTruth(GroundTruth):
 
     def touched_by_people(self) -> int:
         """Touches during which the robot did not move, those that go on included."""
-        return self._crowd.touches_at_rest
+        return self._touches.at_rest
 
     def observable_floor(self) -> OccupancyGrid:
         """Cells of 0.05 m (or the map file's own) that can be seen from where it can get to, all as drawn."""

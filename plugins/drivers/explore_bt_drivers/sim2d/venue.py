@@ -9,12 +9,10 @@ import numpy as np
 from explore_bt.errors import WorldError
 from explore_bt.interfaces import RobotContext
 from explore_bt.types import Pose2
+from explore_bt_drivers.people import Crowd, Town
 from explore_bt_drivers.sim2d.arena import Arena
-from explore_bt_drivers.sim2d.crowd import Crowd
 from explore_bt_drivers.sim2d.options import Sim2dOptions
-from explore_bt_drivers.sim2d.start import Taken, choose_start
-from explore_bt_drivers.sim2d.town import Town
-from explore_bt_drivers.world import World, load_world
+from explore_bt_drivers.world import Taken, World, choose_start, load_world
 
 __all__ = ["Venue"]
 
@@ -67,7 +65,7 @@ class Venue:
             WorldError: no floor for walkers, or other ones than the robots before asked for.
         """
         if self._people is None:
-            self._people = _People(Town(self.world, options, start), options, context)
+            self._people = _People(_town(self.world, options, start), options, context)
         people = self._people
         for name in _PEOPLE:
             asked, there = getattr(options, name), getattr(people.options, name)
@@ -76,8 +74,18 @@ class Venue:
                     f"{self.world.source}: robot {context.robot} asks for {name} = {asked:g}, robot "
                     f"{people.context.robot} in the same world for {there:g}; give both the same"
                 )
-        return people.town.crowd(self._rng(), options.radius)
+        return people.town.crowd(self._rng())
 
     def _rng(self) -> np.random.Generator:
         assert self._people is not None
         return self._people.context.rng("walkers")
+
+
+def _town(world: World, options: Sim2dOptions, start: Pose2) -> Town:
+    return Town(
+        world,
+        start.xy,
+        options.walkers,
+        walker_radius_m=options.walker_radius,
+        walker_speed_mps=options.walker_speed,
+    )

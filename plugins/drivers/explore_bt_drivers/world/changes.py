@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import numpy as np
 import yaml
 
 from explore_bt.maps import MarkedFile
 from explore_bt.types import Pose2
 from explore_bt.units import DURATION
+from explore_bt_drivers.world.piece import Piece
 from explore_bt_drivers.world.plan import Stand, Thing
 from explore_bt_drivers.world.solid import Solid
 
@@ -44,9 +42,7 @@ def read_shut(file: MarkedFile, node: yaml.Node | None, leaf: Solid) -> list[Thi
     return [Thing(leaf.name, tuple(stands))] if len(stands) > 1 else []
 
 
-def read_moved(
-    file: MarkedFile, node: yaml.Node | None, drawn: Sequence[Solid], bounds: Bounds | None
-) -> list[Thing]:
+def read_moved(file: MarkedFile, node: yaml.Node | None, piece: Piece, bounds: Bounds | None) -> list[Thing]:
     """``moved: [{at: time, to: [x, y] or [x, y, turn]}, ...]``: then its middle stands there.
 
     The middle is that of the box round all of it; the turn is about the middle and counts from the drawing.
@@ -54,35 +50,33 @@ def read_moved(
     Returns:
         The furniture as the one thing that changes; nothing where it is never moved.
     """
-    stands = [Stand(0.0, tuple(drawn))]
+    stands = [Stand(0.0, piece.solids, piece.overhangs)]
     for item in file.items(node, "moved"):
-        stand = _read_move(file, item, drawn, bounds)
+        stand = _read_move(file, item, piece, bounds)
         if stand is None:
             continue
         if len(stands) > 1 and stand.begin_s <= stands[-1].begin_s:
             times = f"at {stand.begin_s:g} s, the move before it at {stands[-1].begin_s:g} s"
-            file.fault(item, f"{drawn[0].name} is moved {times}; put the moves in order")
+            file.fault(item, f"{piece.name} is moved {times}; put the moves in order")
             continue
         stands.append(stand)
-    return [Thing(drawn[0].name, tuple(stands))] if len(stands) > 1 else []
+    return [Thing(piece.name, tuple(stands))] if len(stands) > 1 else []
 
 
-def _read_move(
-    file: MarkedFile, node: yaml.Node, drawn: Sequence[Solid], bounds: Bounds | None
-) -> Stand | None:
+def _read_move(file: MarkedFile, node: yaml.Node, piece: Piece, bounds: Bounds | None) -> Stand | None:
     keys = file.fields(node, "a move", required=("at", "to"))
     at_s = file.quantity(keys.get("at"), DURATION, "at", low=0.0)
     to = _read_place(file, keys.get("to"))
-    if at_s is None or to is None or not drawn:
+    if at_s is None or to is None or not piece.parts:
         return None
-    solids = _moved(drawn, to)
-    corners = np.concatenate([solid.corners for solid in solids])
+    moved = piece.moved(to)
+    corners = moved.corners
     if bounds is not None and ((corners < bounds[:2]) | (corners > bounds[2:])).any():
         x0, y0, x1, y1 = bounds
         reach = f"which reaches from [{x0:g}, {y0:g}] to [{x1:g}, {y1:g}]"
-        file.fault(keys["to"], f"{drawn[0].name} would stand outside the world, {reach}; move it further in")
+        file.fault(keys["to"], f"{piece.name} would stand outside the world, {reach}; move it further in")
         return None
-    return Stand(at_s, solids)
+    return Stand(at_s, moved.solids, moved.overhangs)
 
 
 def _read_place(file: MarkedFile, node: yaml.Node | None) -> Pose2 | None:
@@ -91,9 +85,3 @@ def _read_place(file: MarkedFile, node: yaml.Node | None) -> Pose2 | None:
         return None if xy is None else Pose2(xy[0], xy[1], 0.0)
     pose = None if node is None else file.pose(node, "turn")
     return None if pose is None else Pose2(*pose)
-
-
-def _moved(drawn: Sequence[Solid], to: Pose2) -> tuple[Solid, ...]:
-    corners = np.concatenate([solid.corners for solid in drawn])
-    middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
-    return tuple(Solid(solid.name, to.apply(solid.corners - middle), solid.height_m) for solid in drawn)

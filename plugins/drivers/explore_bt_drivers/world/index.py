@@ -13,17 +13,29 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from explore_bt_drivers.world.solid import Material
+
 __all__ = [
+    "GLASS",
+    "MIRROR",
     "SegmentIndex",
     "build_index",
     "cast_ray",
     "cast_rays",
     "clearance_of",
+    "first_hit",
     "fits",
     "nearest",
+    "reflected",
     "way_fits",
     "winding",
 ]
+
+GLASS, MIRROR = int(Material.GLASS), int(Material.MIRROR)
+"""For kernels, which know no enumerations."""
+
+MOST_MIRRORS = 8
+"""A beam that was reflected so often is lost."""
 
 _EDGE = 1e-9
 _STRIDE_M = 0.05
@@ -39,6 +51,7 @@ class SegmentIndex(NamedTuple):
         items: (K,) int32 indices of segments.
         x0, y0: lower left corner of bucket (0, 0), metres.
         size_m: side of a bucket.
+        materials: (M,) int8, of each segment: ``Material``.
     """
 
     segments: NDArray[np.float64]
@@ -49,10 +62,21 @@ class SegmentIndex(NamedTuple):
     size_m: float
     rows: int
     cols: int
+    materials: NDArray[np.int8]
 
 
-def build_index(segments: NDArray[np.float64], size_m: float = 0.25) -> SegmentIndex:
-    """Sort (M, 4) segments into buckets, M >= 1; the buckets cover all of them with a margin."""
+def build_index(
+    segments: NDArray[np.float64], materials: NDArray[np.int8] | None = None, size_m: float = 0.25
+) -> SegmentIndex:
+    """Sort (M, 4) segments into buckets, M >= 1; the buckets cover all of them with a margin.
+
+    Args:
+        segments: metres.
+        materials: (M,) int8, of each; all matt by default.
+        size_m: side of a bucket.
+    """
+    if materials is None:
+        materials = np.zeros(len(segments), dtype=np.int8)
     ends = segments.reshape(-1, 2)
     low, high = ends.min(axis=0) - size_m, ends.max(axis=0) + size_m
     cols, rows = (int(n) for n in np.ceil((high - low) / size_m))
@@ -63,7 +87,7 @@ def build_index(segments: NDArray[np.float64], size_m: float = 0.25) -> SegmentI
     items = np.empty(int(starts[-1]), dtype=np.int32)
     counts[:] = 0
     _sort(segments, x0, y0, size_m, rows, cols, counts, items, starts)
-    return SegmentIndex(segments, starts, items, x0, y0, size_m, rows, cols)
+    return SegmentIndex(segments, starts, items, x0, y0, size_m, rows, cols, materials)
 
 
 @njit(cache=True)
@@ -90,9 +114,37 @@ def _sort(segments, x0, y0, size, rows, cols, counts, items, starts=None):  # ty
 
 @njit(cache=True)
 def cast_ray(index, x, y, dx, dy, limit):  # type: ignore[no-untyped-def]  # kernel
-    """Distance along the unit direction (dx, dy) to the first segment; inf beyond ``limit``.
+    """Length of a lidar's beam along the unit direction (dx, dy): through glass, on from mirrors.
 
-    (x, y) lies within the buckets, as every place inside a world's bounds does.
+    inf beyond ``limit``, or lost between mirrors. (x, y) lies within the buckets, as every place inside a
+    world's bounds does.
+    """
+    driven, last = 0.0, -1
+    for _ in range(MOST_MIRRORS):
+        t, last = first_hit(index, x, y, dx, dy, limit - driven, last)
+        if last < 0:
+            return math.inf
+        driven += t
+        if index.materials[last] != MIRROR:
+            return driven
+        x, y = x + t * dx, y + t * dy
+        dx, dy = reflected(index.segments, last, dx, dy)
+    return math.inf
+
+
+@njit(cache=True)
+def reflected(segments, m, dx, dy):  # type: ignore[no-untyped-def]  # kernel
+    """The direction in which a beam along (dx, dy) leaves the mirror that segment ``m`` is."""
+    ux, uy = segments[m, 2] - segments[m, 0], segments[m, 3] - segments[m, 1]
+    along = 2.0 * (dx * ux + dy * uy) / (ux * ux + uy * uy)
+    return along * ux - dx, along * uy - dy
+
+
+@njit(cache=True)
+def first_hit(index, x, y, dx, dy, limit, but=-1):  # type: ignore[no-untyped-def]  # kernel
+    """Distance along (dx, dy) to the first segment that is not glass, and its number; (inf, -1) beyond.
+
+    ``but`` is left out: the mirror that the beam comes from.
     """
     size = index.size_m
     col = math.floor((x - index.x0) / size)
@@ -107,7 +159,7 @@ def cast_ray(index, x, y, dx, dy, limit):  # type: ignore[no-untyped-def]  # ker
         next_y = (index.y0 + (row + (dy > 0.0)) * size - y) / dy
     per_col = size / abs(dx) if dx != 0.0 else math.inf
     per_row = size / abs(dy) if dy != 0.0 else math.inf
-    best = math.inf
+    best, who = math.inf, -1
     while 0 <= row < index.rows and 0 <= col < index.cols:
         bucket = row * index.cols + col
         for k in range(index.starts[bucket], index.starts[bucket + 1]):
@@ -123,8 +175,8 @@ def cast_ray(index, x, y, dx, dy, limit):  # type: ignore[no-untyped-def]  # ker
             if t < 0.0 or t >= best:
                 continue
             u = (px * dy - py * dx) / cross
-            if -_EDGE <= u <= 1.0 + _EDGE:
-                best = t
+            if -_EDGE <= u <= 1.0 + _EDGE and index.materials[m] != GLASS and m != but:
+                best, who = t, m
         leave = min(next_x, next_y)
         if best <= leave or leave > limit:
             break
@@ -134,12 +186,12 @@ def cast_ray(index, x, y, dx, dy, limit):  # type: ignore[no-untyped-def]  # ker
         else:
             row += step_row
             next_y += per_row
-    return best if best <= limit else math.inf
+    return (best, who) if best <= limit else (math.inf, -1)
 
 
 @njit(cache=True)
 def cast_rays(index, x, y, angles, limit):  # type: ignore[no-untyped-def]  # kernel
-    """(N,) float64 ranges from one point along (N,) float64 world angles, radians."""
+    """(N,) float64 lengths of beams from one point along (N,) float64 world angles, radians."""
     ranges = np.empty(angles.shape[0])
     for i in range(angles.shape[0]):
         ranges[i] = cast_ray(index, x, y, math.cos(angles[i]), math.sin(angles[i]), limit)

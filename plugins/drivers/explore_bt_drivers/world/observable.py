@@ -13,8 +13,10 @@ from explore_bt.types import FREE, UNKNOWN, OccupancyGrid
 from explore_bt_drivers.world.index import fits
 from explore_bt_drivers.world.world import World
 
-__all__ = ["fitting_cells", "observable_floor", "reachable_cells"]
+__all__ = ["SPARE_M", "fitting_cells", "observable_floor", "reachable_cells"]
 
+SPARE_M = 0.025
+"""A way counts only if it leaves this much on either side: through an exact fit no lidar guides a robot."""
 _VIEWPOINT_SPACING_M = 0.3
 _RAYS = 720
 _TOUCH_M = 1e-6

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from explore_bt.types import Pose2
+from explore_bt_drivers.world.ramps import Ramp
 from explore_bt_drivers.world.solid import Solid
 
 __all__ = ["Person", "Stand", "Thing", "WorldPlan"]
@@ -37,6 +38,7 @@ class Stand:
 
     begin_s: float
     solids: tuple[Solid, ...]
+    overhangs: tuple[Solid, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +64,9 @@ class WorldPlan:
         start: where the robot begins unless the mission says otherwise.
         things: what changes in the course of time.
         people: who walks there.
+        overhangs: what hangs above the floor as drawn: table tops, cupboards; a planar robot passes below.
+        sills: of doors, low enough to be driven over.
+        ramps: the floor's slopes.
     """
 
     name: str
@@ -70,3 +75,6 @@ class WorldPlan:
     start: Pose2 | None
     things: tuple[Thing, ...] = ()
     people: tuple[Person, ...] = ()
+    overhangs: tuple[Solid, ...] = ()
+    sills: tuple[Solid, ...] = ()
+    ramps: tuple[Ramp, ...] = ()

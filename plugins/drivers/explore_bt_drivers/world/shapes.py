@@ -8,43 +8,96 @@ from numpy.typing import NDArray
 
 from explore_bt.maps import MarkedFile
 from explore_bt.units import ANGLE, LENGTH
-from explore_bt_drivers.world.solid import Solid, box_corners, circle_corners, crossing_edges, signed_area
+from explore_bt_drivers.world.materials import read_material
+from explore_bt_drivers.world.piece import Piece
+from explore_bt_drivers.world.solid import (
+    Material,
+    Solid,
+    box_corners,
+    circle_corners,
+    crossing_edges,
+    signed_area,
+)
 
 __all__ = ["SHAPES", "read_furniture"]
 
 SHAPES = ("box", "polygon", "circle")
-_EXTRAS = ("turn", "legs", "height", "moved")
+_EXTRAS = ("turn", "legs", "top", "height", "underside", "material", "moved")
+_TOP_M = 0.04
 _SMALLEST_AREA_M2 = 1e-6
 
 
 def read_furniture(
     file: MarkedFile, node: yaml.Node, default_height_m: float
-) -> tuple[list[Solid], yaml.Node | None]:
-    """One entry of ``furniture``: ``{name, box | polygon | circle, turn, legs, height, moved}``.
+) -> tuple[Piece, yaml.Node | None]:
+    """One entry of ``furniture``: ``{name, box | polygon | circle, turn, height, material, moved, ...}``.
 
-    With ``legs`` only four square legs of that width stand on the floor, one in each corner of the box.
+    With ``legs`` only four square legs of that width stand on the floor, one in each corner of the box, and
+    carry a plate as thick as ``top``; with ``underside`` nothing does: it hangs on the wall.
 
     Returns:
-        The solids as drawn, and the value of ``moved``, which only makes sense once the bounds are known.
+        The piece as drawn, and the value of ``moved``, which only makes sense once the bounds are known.
     """
     keys = file.fields(node, "furniture", required=("name",), optional=(*SHAPES, *_EXTRAS))
     name = file.text(keys.get("name"), "name")
     height = file.quantity(keys.get("height"), LENGTH, "height", low=0.01)
     turn = file.quantity(keys.get("turn"), ANGLE, "turn")
     legs = file.quantity(keys.get("legs"), LENGTH, "legs", low=0.005)
+    material = read_material(file, keys.get("material"))
     shapes = [key for key in SHAPES if key in keys]
     if keys and len(shapes) != 1:
         found = " and ".join(shapes) or "no shape"
         file.fault(node, f"furniture has {found}; expected one of {', '.join(SHAPES)}")
-        return [], None
+        return Piece(""), None
     if not shapes or name is None:
-        return [], None
+        return Piece(""), None
     for key in ("turn", "legs"):
         if key in keys and shapes[0] != "box":
             file.fault(keys[key], f"{key} goes with a box, not with a {shapes[0]}")
-    footprints = _footprints(file, keys[shapes[0]], shapes[0], turn or 0.0, legs)
-    solids = [Solid(name, corners, height or default_height_m) for corners in footprints]
-    return solids, keys.get("moved")
+    before = file.fault_count
+    heights = _read_heights(file, keys, name, height or default_height_m)
+    whole = _footprints(file, keys[shapes[0]], shapes[0], turn or 0.0, None)
+    feet = _footprints(file, keys[shapes[0]], shapes[0], turn or 0.0, legs) if whole and legs else []
+    if file.fault_count > before:
+        return Piece(name), keys.get("moved")
+    return _piece(name, whole, feet, heights, material), keys.get("moved")
+
+
+def _read_heights(
+    file: MarkedFile, keys: dict[str, yaml.Node], name: str, height_m: float
+) -> tuple[float, float]:
+    """Where its topmost part begins and ends: at the floor, unless something carries it."""
+    if "top" in keys and "legs" not in keys:
+        file.fault(keys["top"], "top is the thickness of a plate on legs; give legs too, or leave it out")
+    if "underside" in keys and "legs" in keys:
+        file.fault(keys["underside"], "furniture has legs or an underside, not both; leave one out")
+        return (0.0, height_m)
+    top_m = file.quantity(keys.get("top"), LENGTH, "top", low=0.001) or _TOP_M
+    low_m = file.quantity(keys.get("underside"), LENGTH, "underside", low=0.01) or 0.0
+    if low_m >= height_m:
+        wrong = f"the underside of {name} is at {low_m:g} m, its height {height_m:g} m"
+        file.fault(keys["underside"], f"{wrong}; expected an underside below it: give a height")
+    if "legs" in keys:
+        low_m = height_m - top_m
+        if low_m <= 0.0:
+            wrong = f"the top of {name} is {top_m:g} m thick, its height {height_m:g} m"
+            file.fault(keys.get("top", keys["legs"]), f"{wrong}; that leaves no legs: make one of them fit")
+    return (low_m, height_m)
+
+
+def _piece(
+    name: str,
+    whole: list[NDArray[np.float64]],
+    feet: list[NDArray[np.float64]],
+    heights: tuple[float, float],
+    material: Material,
+) -> Piece:
+    low_m, high_m = heights
+    main = tuple(Solid(name, corners, high_m, material, low_m) for corners in whole)
+    if low_m == 0.0:
+        return Piece(name, main)
+    # legs are drawn up to the height of the piece, so that a planar robot's map has them as they were
+    return Piece(name, tuple(Solid(name, corners, high_m) for corners in feet), main)
 
 
 def _footprints(

@@ -3,29 +3,55 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
 
-__all__ = ["Solid", "box_corners", "circle_corners", "crossing_edges", "outline_edges", "signed_area"]
+__all__ = [
+    "Material",
+    "Solid",
+    "box_corners",
+    "circle_corners",
+    "crossing_edges",
+    "materials_of",
+    "outline_edges",
+    "signed_area",
+]
+
+
+class Material(IntEnum):
+    """What a surface does to the beam of a lidar; robots and people run into all of them."""
+
+    MATT = 0
+    """Sends it back."""
+    GLASS = 1
+    """Lets it pass."""
+    MIRROR = 2
+    """Reflects it: the lidar sees the room behind the mirror, which is not there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solid:
-    """A prism standing on the floor.
+    """A prism standing on the floor, or hanging above it.
 
     Attributes:
         name: as people call it ("sofa", "wall of kitchen").
         corners: (N, 2) float64, metres, world frame, counter-clockwise, N >= 3, edges do not cross.
-        height_m: from the floor up; the planar simulator takes everything for higher than its lidar.
+        height_m: of its top above the floor; the planar simulator takes everything for higher than its lidar.
+        material: of all its faces.
+        low_m: of its underside above the floor; the planar simulator leaves out what hangs.
     """
 
     name: str
     corners: NDArray[np.float64]
     height_m: float
+    material: Material = Material.MATT
+    low_m: float = 0.0
 
 
 def box_corners(x0: float, y0: float, x1: float, y1: float, turn_rad: float = 0.0) -> NDArray[np.float64]:
@@ -45,6 +71,14 @@ def circle_corners(x: float, y: float, radius_m: float, count: int = 32) -> NDAr
 def outline_edges(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """(N, 4) edges round (N, 2) corners: x, y of begin and end; solid on the left if counter-clockwise."""
     return np.hstack((corners, np.roll(corners, -1, axis=0)))
+
+
+def materials_of(solids: Sequence[Solid]) -> NDArray[np.int8]:
+    """(M,) int8: the material of every edge round every solid."""
+    return np.repeat(
+        np.array([solid.material for solid in solids], dtype=np.int8),
+        [len(solid.corners) for solid in solids],
+    )
 
 
 def signed_area(corners: NDArray[np.float64]) -> float:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from explore_bt_drivers.world.index import build_index
-from explore_bt_drivers.world.solid import Solid, outline_edges
+from explore_bt_drivers.world.solid import Solid, materials_of, outline_edges
 from explore_bt_drivers.world.world import World, floor_like
 
 __all__ = ["with_every_stand", "with_solids"]
@@ -21,9 +21,10 @@ def with_solids(world: World, solids: Sequence[Solid]) -> World:
     owners = np.repeat(
         [world.names.index(solid.name) for solid in solids], [len(edges) for edges in outlines]
     )
+    materials = materials_of(solids)
     return replace(
         world,
-        index=build_index(segments),
+        index=build_index(segments, np.concatenate((world.index.materials[: world.fixed], materials))),
         owners=np.concatenate((world.owners[: world.fixed], owners)).astype(np.int32),
     )
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from explore_bt_drivers.world.solid import Solid
+from explore_bt_drivers.world.solid import Material, Solid
 
-__all__ = ["Door", "DoorError", "Wall", "cut_doors", "door_leaf", "wall_solid"]
+__all__ = ["Door", "DoorError", "Wall", "cut_doors", "door_leaf", "door_sill", "wall_solid"]
 
 _SLACK = 1e-6
 _LEAF_M = 0.04
@@ -30,6 +30,7 @@ class Wall:
     thickness_m: float
     height_m: float
     capped: tuple[bool, bool] = (True, True)
+    material: Material = Material.MATT
 
     @property
     def length_m(self) -> float:
@@ -44,13 +45,11 @@ class Wall:
 
     def piece(self, low_m: float, high_m: float) -> Wall:
         """The part between two stations; cut ends close no corner."""
-        return Wall(
-            self.name,
-            self._at(low_m),
-            self._at(high_m),
-            self.thickness_m,
-            self.height_m,
-            (self.capped[0] and low_m <= 0.0, self.capped[1] and high_m >= self.length_m),
+        return replace(
+            self,
+            begin=self._at(low_m),
+            end=self._at(high_m),
+            capped=(self.capped[0] and low_m <= 0.0, self.capped[1] and high_m >= self.length_m),
         )
 
     def _at(self, station_m: float) -> tuple[float, float]:
@@ -91,18 +90,29 @@ def cut_doors(walls: Sequence[Wall], door: Door) -> list[Wall]:
 
 
 def door_leaf(walls: Sequence[Wall], door: Door) -> Solid:
-    """What fills the opening of a door while it is shut: 4 cm thick at most, as high as its wall.
+    """What fills the opening of a door while it is shut: of its wall's kind, but 4 cm thick at most.
 
     Args:
         walls: before the door is cut out of them; one holds it.
         door: of which ``cut_doors`` has nothing to complain.
     """
+    opening = _opening(walls, door)
+    return wall_solid(
+        replace(opening, name=f"door {door.name}", thickness_m=min(_LEAF_M, opening.thickness_m))
+    )
+
+
+def door_sill(walls: Sequence[Wall], door: Door, height_m: float) -> Solid:
+    """What lies in the opening of a door, as thick as its wall; arguments as of ``door_leaf``."""
+    sill = replace(_opening(walls, door), name=f"sill of door {door.name}", height_m=height_m)
+    return wall_solid(replace(sill, material=Material.MATT))
+
+
+def _opening(walls: Sequence[Wall], door: Door) -> Wall:
     wall = next(wall for wall in walls if _hosts(wall, door))
     along, _ = wall.station(door.at)
     opening = wall.piece(along - door.width_m / 2, along + door.width_m / 2)
-    thickness = min(_LEAF_M, wall.thickness_m)
-    name = f"door {door.name}"
-    return wall_solid(replace(opening, name=name, thickness_m=thickness, capped=(False, False)))
+    return replace(opening, capped=(False, False))
 
 
 def wall_solid(wall: Wall) -> Solid:
@@ -115,7 +125,7 @@ def wall_solid(wall: Wall) -> Solid:
     if wall.capped[1]:
         x1, y1 = x1 + dx, y1 + dy
     corners = [(x0 + dy, y0 - dx), (x1 + dy, y1 - dx), (x1 - dy, y1 + dx), (x0 - dy, y0 + dx)]
-    return Solid(wall.name, np.array(corners), wall.height_m)
+    return Solid(wall.name, np.array(corners), wall.height_m, wall.material)
 
 
 def _hosts(wall: Wall, door: Door) -> bool:

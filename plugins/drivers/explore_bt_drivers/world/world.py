@@ -16,7 +16,7 @@ from explore_bt.types import FREE, OCCUPIED, OccupancyGrid, Pose2
 from explore_bt_drivers.world.index import SegmentIndex, build_index, cast_rays, nearest, winding
 from explore_bt_drivers.world.outline import grid_outline
 from explore_bt_drivers.world.plan import Person, Thing, WorldPlan
-from explore_bt_drivers.world.solid import box_corners, outline_edges
+from explore_bt_drivers.world.solid import box_corners, materials_of, outline_edges
 from explore_bt_drivers.world.world_file import read_world_file
 
 __all__ = ["World", "floor_like", "load_world"]
@@ -37,6 +37,7 @@ class World:
         fixed: so many segments come first that never change; those of ``things`` follow.
         things: what changes in the course of time.
         people: who walks there.
+        plan: the world file's content, heights included; None for a map, which has none.
     """
 
     source: Path
@@ -48,6 +49,7 @@ class World:
     fixed: int = 0
     things: tuple[Thing, ...] = ()
     people: tuple[Person, ...] = ()
+    plan: WorldPlan | None = None
 
     def is_free(self, x: float, y: float) -> bool:
         """Whether a point (metres) lies in no solid and within the world."""
@@ -70,7 +72,10 @@ class World:
     def cast(
         self, x: float, y: float, angles_rad: NDArray[np.float64], limit_m: float
     ) -> NDArray[np.float64]:
-        """(N,) float64 exact ranges along (N,) world angles; +inf where nothing stands within the limit."""
+        """(N,) float64 exact ranges along (N,) world angles; +inf where nothing stands within the limit.
+
+        As a lidar has them: through glass, and by way of mirrors.
+        """
         return np.asarray(cast_rays(self.index, x, y, angles_rad, limit_m))
 
 
@@ -129,7 +134,8 @@ def _from_plan(path: Path) -> World:
     names = tuple(dict.fromkeys(["the edge of the world", *(solid.name for solid in plan.solids), *ever]))
     owners = [0, *(names.index(solid.name) for solid in solids)]
     lengths = [len(corners) for corners in outlines]
-    index = build_index(np.ascontiguousarray(segments))
+    materials = np.concatenate((np.zeros(len(edge), dtype=np.int8), materials_of(solids)))
+    index = build_index(np.ascontiguousarray(segments), materials)
     return World(
         path,
         index,
@@ -140,6 +146,7 @@ def _from_plan(path: Path) -> World:
         sum(lengths[: 1 + len(fixed)]),
         plan.things,
         plan.people,
+        plan,
     )
 
 

@@ -1,0 +1,116 @@
+"""``explore-bt ros2-sim``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from explore_bt.cli.driving import SeedOption
+from explore_bt.cli.guard import guarded
+from explore_bt.cli.loading import SetOption, load_checked
+from explore_bt.cli.places import find_mission
+from explore_bt.cli.stopping import stopping_by_signal
+from explore_bt.errors import UserError
+
+if TYPE_CHECKING:
+    from explore_bt.interfaces import Driver, RobotContext
+    from explore_bt.plugin import Registry
+
+__all__ = ["ros2_sim"]
+
+_WORLD = "format: explore-bt-world/"
+
+
+@guarded
+def ros2_sim(
+    mission: Annotated[
+        str,
+        typer.Argument(
+            metavar="MISSION_OR_WORLD", help="Whose simulator to run, or a world to put sim2d in."
+        ),
+    ],
+    set_: SetOption = None,
+    seed: SeedOption = 0,
+    speed: Annotated[float, typer.Option(min=0.01, max=100.0, help="Simulated seconds per second.")] = 1.0,
+    domain: Annotated[
+        int | None, typer.Option(min=0, max=232, help="ROS domain; else ROS_DOMAIN_ID.")
+    ] = None,
+    namespace: Annotated[str, typer.Option(help="Before every relative topic name.")] = "",
+    wall_time: Annotated[
+        bool, typer.Option("--wall-time", help="Stamps are the system's time, there is no /clock; speed 1.")
+    ] = False,
+    stamped: Annotated[bool, typer.Option("--stamped", help="Commands are TwistStamped.")] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write at the end what only a simulator knows, as JSON."),
+    ] = None,
+) -> None:
+    """Put a simulated robot behind ROS 2 topics, until Ctrl-C.
+
+    A mission with driver: {use: ros2, use_sim_time: true} then drives it from another process.
+    """
+    from explore_bt.interfaces import Bridge
+    from explore_bt.runtime import StopFlag
+
+    driver, context, registry = _robot(mission, set_, seed)
+    bridge: type[Bridge] = registry.get("bridge", "ros2")
+    settings = {"domain": domain, "namespace": namespace, "wall_time": wall_time, "stamped": stamped}
+    served = bridge(bridge.Options.model_validate(settings))
+    typer.echo(f"{driver.name}: getting ready")
+    driver.setup(context)
+    stop = StopFlag()
+    try:
+        with stopping_by_signal(stop, then="the robot brakes"):
+            pace = "the system's time" if wall_time else f"/clock at {speed:g} times the speed of real time"
+            typer.echo(f"{driver.name} is on ROS 2, with {pace}; Ctrl-C ends it")
+            served.serve(driver, speed, lambda: stop.is_raised)
+    finally:
+        driver.close()
+    truth = _truth(driver)
+    if out is not None:
+        out.write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
+    contacts, touches = truth["contacts"], truth["touched_by_people"]
+    typer.echo(f"{truth['time_s']:.0f} s: {contacts} contacts, {touches} touches by people")
+
+
+def _robot(mission: str, settings: list[str] | None, seed: int) -> tuple[Driver, RobotContext, Registry]:
+    """The first robot's driver, not set up yet.
+
+    Raises:
+        UserError: neither mission nor world, or a driver that is no simulator.
+    """
+    from explore_bt.interfaces import RobotContext
+
+    path = Path(mission)
+    if path.is_file() and _WORLD in path.read_text(encoding="utf-8", errors="replace"):
+        from explore_bt.plugin import load_plugins
+
+        registry = load_plugins().registry
+        sim2d: type[Driver] = registry.get("driver", "sim2d")
+        options: Any = sim2d.Options.model_validate({"world": path.resolve()})
+        return sim2d(options), RobotContext(seed=seed), registry
+    checked, registry = load_checked(str(find_mission(mission)), settings)
+    robot = checked.robots[0]
+    driver = robot.driver.make()
+    if driver.name in ("ros2", "replay"):
+        raise UserError(
+            f"{checked.path}: robot {robot.name}'s driver is {driver.name}; ros2-sim needs a simulator, "
+            "for example driver: {use: sim2d, world: FILE}"
+        )
+    return driver, RobotContext(robot=robot.name, seed=seed, start=robot.start), registry
+
+
+def _truth(driver: Driver) -> dict[str, Any]:
+    """What only the simulator knows."""
+    truth = driver.truth()
+    pose = truth.pose() if truth else None
+    return {
+        "time_s": driver.clock.now_s(),
+        "contacts": truth.contacts() if truth else None,
+        "touched_by_people": truth.touched_by_people() if truth else None,
+        "start": list(driver.start.as_array()),
+        "pose": None if pose is None else list(pose.as_array()),
+    }
