@@ -61,7 +61,6 @@ def test_ros2_map_without_the_ros2_driver_says_what_to_write():
         Ros2Map(Ros2Map.Options()).setup(RobotContext())
 
 
-@pytest.mark.slow
 def test_a_foreign_slam_in_a_third_process_makes_the_map_of_the_same_mission(tmp_path):
     truth = tmp_path / "truth.json"
     with robot_in(MISSIONS / "02_any_map.yaml", *SIM, "--out", truth), foreign_slam():
