@@ -61,6 +61,7 @@ def names() -> Iterator[tuple[str, str]]:
     ip("netns", "del", two)
 
 
+@pytest.mark.slow
 def test_a_cut_cable_stops_the_robot_and_a_mended_one_lets_it_go_on(names, tmp_path):
     (tmp_path / "hall.yaml").write_text(HALL)
     environment = {

@@ -119,6 +119,7 @@ def test_without_the_ros2_driver_it_says_what_to_write():
         Nav2(Nav2Options()).setup(RobotContext())
 
 
+@pytest.mark.slow
 def test_nav2_is_given_goals_and_cancels_gives_up_dies_and_comes_back(nav2_msgs, hall):
     robot = Robot(Nav2(Nav2Options(patience=3.0)))
     controller = robot.controller
