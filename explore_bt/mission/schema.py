@@ -101,7 +101,7 @@ def _inline(schema: Any, definitions: Mapping[str, Any], depth: int = 0) -> Any:
 
 def _plugins(catalog: PluginCatalog, kind: str) -> Schema:
     names = list(catalog.names(kind))
-    shapes: list[Schema] = [{"enum": names}, _CONSTANT]
+    shapes: list[Schema] = [*([{"enum": names}] if names else []), _CONSTANT]  # an empty enum is no schema
     for name in names:
         cls: Any = catalog.get(kind, name)
         properties, required = _options(cls.Options.model_json_schema())

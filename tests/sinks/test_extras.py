@@ -29,7 +29,7 @@ def test_without_its_library_a_sink_is_left_out_with_the_line_to_type(name, monk
 def test_options_of_a_sink_are_given_behind_its_name(name, key, value):
     from explore_bt.cli.sinks import make_sinks
 
-    (sink,) = make_sinks(load_plugins().registry, [f"{name},{key}={value}"])
+    *_, sink = make_sinks(load_plugins().registry, [f"{name},{key}={value}"])
     assert isinstance(sink, Sink)
     assert str(getattr(sink.options, key)) == value
 

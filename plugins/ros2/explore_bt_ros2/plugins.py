@@ -14,7 +14,8 @@ __all__ = ["explore_bt_register"]
 
 @hookimpl
 def explore_bt_register() -> Sequence[type]:
-    """Driver, SLAM, controller and sink."""
+    """Driver, SLAM, controller and bridge."""
+    require("rclpy")
     from explore_bt_ros2.driver import Ros2
     from explore_bt_ros2.nav2 import Nav2
     from explore_bt_ros2.neighbour_map import Ros2Map
