@@ -24,6 +24,8 @@ _FAR_M = 4.0
 _ROOM_M = _MARGIN_M + 0.03
 """A plan passes a mate so far off that the gate will not mind, cells and all."""
 _SLACK_M = 1e-3
+_ESCAPE_SLOPE = 0.1
+"""Metres that a way off from too near a mate must win for every metre driven."""
 
 
 def fault_by_mates(
@@ -51,7 +53,9 @@ def fault_by_mates(
         worst_m = float(room_m.min())
         if worst_m >= needed_m:
             continue
-        if worst_m < min(needed_m, room_m[0]) - _SLACK_M or room_m[-1] < room_m[0] + _SLACK_M:
+        # from rest the first way checked is shorter than a millimetre: what it gains counts, not how much
+        gained_m = _ESCAPE_SLOPE * float(np.hypot(*(way[-1, :2] - way[0, :2])))
+        if worst_m < min(needed_m, room_m[0]) - _SLACK_M or room_m[-1] < room_m[0] + gained_m:
             return f"team mate {mate.name} stops {worst_m - radius_m - mate.radius_m:.2f} m away", mate.name
     return "", ""
 

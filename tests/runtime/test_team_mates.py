@@ -120,6 +120,16 @@ def test_who_stands_too_near_may_drive_off_and_not_nearer() -> None:
     assert fault_by_mates(-away, RADIUS, near, 0.0)[1] == "bob"
 
 
+@pytest.mark.parametrize("bearing_deg", [0, 60, -60])
+def test_from_rest_too_near_a_mate_a_robot_drives_off(bearing_deg: float) -> None:
+    robot = Driven("a", Pose2(-0.54, 0.0, math.pi + math.radians(bearing_deg)))
+    for step in range(60):
+        robot.step(
+            Twist2(0.3, 0.0), [mate((0.0, 0.0), stamp_s=step * DT, binding_s=(step + 1) * DT)], step * DT
+        )
+    assert math.dist(robot.pose.xy, (0.0, 0.0)) > 1.0
+
+
 def test_an_old_word_counts_for_less() -> None:
     way = np.column_stack((np.linspace(0.0, 0.4, 10), np.zeros((10, 2))))
     assert fault_by_mates(way, RADIUS, [mate((1.2, 0.0))], 0.05) == ("", "")
