@@ -71,6 +71,7 @@ def test_a_cut_cable_stops_the_robot_and_a_mended_one_lets_it_go_on(names, tmp_p
         "PYTHONUNBUFFERED": "1",
     }
     sim = "from explore_bt.cli import main; main()"
+    said, heard = ((tmp_path / name).open("w") for name in ("said.txt", "heard.txt"))
     robot = subprocess.Popen(
         [
             *("ip", "netns", "exec", names[0], sys.executable, "-c", sim, "ros2-sim"),
@@ -78,9 +79,8 @@ def test_a_cut_cable_stops_the_robot_and_a_mended_one_lets_it_go_on(names, tmp_p
             "--wall-time",
         ],
         env=environment,
-        stdout=subprocess.DEVNULL,
+        stdout=said,
     )
-    heard = (tmp_path / "heard.txt").open("w+")
     listener = subprocess.Popen(
         ["ip", "netns", "exec", names[1], sys.executable, "-c", _LISTENER], env=environment, stdout=heard
     )
@@ -89,6 +89,11 @@ def test_a_cut_cable_stops_the_robot_and_a_mended_one_lets_it_go_on(names, tmp_p
         return (tmp_path / "heard.txt").read_text().splitlines()
 
     try:
+        until(
+            lambda: "is on ROS 2" in (tmp_path / "said.txt").read_text(),
+            90.0,
+            "the robot has loaded its kernels",
+        )
         until(lambda: lines() and lines()[-1].endswith("fine"), 30.0, "the robot is heard over the cable")
         cut_s = time.monotonic()
         assert ip("-n", names[0], "link", "set", names[0], "down")
@@ -102,4 +107,5 @@ def test_a_cut_cable_stops_the_robot_and_a_mended_one_lets_it_go_on(names, tmp_p
         for process in (robot, listener):
             process.kill()
             process.wait()
+        said.close()
         heard.close()
