@@ -76,8 +76,7 @@ class Commander:
         with self._lock:
             if self._moving_since is None or self._closed:
                 return
-            mission_s, wall_s = self._moving_since
-            if max(self._clock.now_s() - mission_s, time.monotonic() - wall_s) > _LATE_S:
+            if self._clock.since_s(*self._moving_since) > _LATE_S:
                 self._halt()
 
     def _halt(self) -> None:

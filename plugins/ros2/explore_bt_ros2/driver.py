@@ -11,9 +11,10 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import API_VERSION, Driver, Finding, PluginOptions, Request, RobotContext, Sink
 from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
-from explore_bt_ros2.clock import RosClock, SimTimeClock, SystemTimeClock
+from explore_bt_ros2.clock import RosClock, SimTimeClock
 from explore_bt_ros2.commander import Commander
 from explore_bt_ros2.connection import Connection
+from explore_bt_ros2.crew import Crew
 from explore_bt_ros2.link import Link
 from explore_bt_ros2.options import Ros2Options
 from explore_bt_ros2.outputs import Ros2Outputs
@@ -58,7 +59,7 @@ class Ros2(Driver):
 
         Raises:
             PluginError: ROS 2 cannot be started, no lidar is named, nobody tells the time,
-                or the file of parameters is at fault.
+                the file of parameters is at fault, or two robots are taken for one.
         """
         options = self._options = with_parameters(self._options)
         if not (options.scan_topic or options.cloud_topic):
@@ -66,17 +67,14 @@ class Ros2(Driver):
                 "driver ros2: scan_topic and cloud_topic are both empty; name the lidar's topic"
             )
         begin_s = context.resumed.stamp_s if context.resumed else 0.0
-        clock = (SimTimeClock if options.use_sim_time else SystemTimeClock)(begin_s)
+        crew = Crew.of(context.commons, use_sim_time=options.use_sim_time, begin_s=begin_s)
+        clock = crew.clock
         link = Link("explore_bt", options.namespace, options.domain, options.discovery)
         self._connection = Connection(link, clock, TransformBuffer(), options)
-        if isinstance(clock, SimTimeClock):
-            qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-            link.subscribe(
-                ClockMessage,
-                "/clock",
-                lambda tick: clock.tell(seconds_of(tick.clock)),
-                qos,
-            )
+        command_topic = link.full_name(options.command_topic)
+        is_first = crew.join(context.robot, command_topic, has_start=context.start is not None)
+        if isinstance(clock, SimTimeClock) and is_first:
+            _follow(clock, link)
         self._senses = Senses(link, options, clock, self._connection.buffer)
         self._commander = Commander(link, options, clock)
         self._start = context.start or Pose2.identity()
@@ -161,3 +159,9 @@ class Ros2(Driver):
             self._commander.close()
         if self._connection:
             self._connection.link.close()
+
+
+def _follow(clock: SimTimeClock, link: Link) -> None:
+    """Have the clock told what ``/clock`` says."""
+    qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    link.subscribe(ClockMessage, "/clock", lambda tick: clock.tell(seconds_of(tick.clock)), qos)

@@ -44,6 +44,10 @@ class Ros2Options(PluginOptions):
     depth_topic: str = Field("", description="Image of depth, registered to colour")
     battery_topic: str = Field("battery_state", description="BatteryState")
     emergency_topic: str = Field("emergency_stop", description="Bool; true holds the robot")
+    tf_topic: str = Field(
+        "/tf",
+        description="TFMessage; those that stay are on the same name with _static; tf: in the namespace",
+    )
     command_topic: str = Field("cmd_vel", description="where commands go")
     stamped: bool = Field(False, description="commands are TwistStamped, as Nav2's may be")
     reliability: Literal["best_effort", "reliable"] = Field(
@@ -66,7 +70,7 @@ class Ros2Options(PluginOptions):
     )
 
     silence: Duration = Field(
-        0.25, gt=0.0, le=2.0, description="a topic silent for so long stops the robot; 2.5 turns of the lidar"
+        0.22, gt=0.0, le=2.0, description="a topic silent for so long stops the robot; 2.2 turns of the lidar"
     )
     outputs: bool = Field(True, description="publish map, path, marks, diagnostics; offer the services")
     start_when_asked: bool = Field(False, description="begin when someone calls the service explore")

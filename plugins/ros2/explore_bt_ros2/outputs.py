@@ -57,7 +57,7 @@ class Ros2Outputs(Sink):
         self._shown: dict[str, object] = {}
         self._due_s: dict[str, float] = {}
         link = connection.link
-        self._tf = link.publisher(link.tf_type, "/tf", QoSProfile(depth=100))
+        self._tf = link.publisher(link.tf_type, connection.options.tf_topic, QoSProfile(depth=100))
         self._map = link.publisher(GridMessage, "map", _KEPT)
         self._pose = link.publisher(PoseWithCovarianceStamped, "~/pose", QoSProfile(depth=10))
         self._path = link.publisher(PathMessage, "~/path", _KEPT)
