@@ -55,4 +55,4 @@ clean:                     ## forget the environment and what was built
 
 $(ROS)/dev.done: pyproject.toml | $(ROS)/bin/python
 	@echo "installing explore-bt and ROS 2 into $(ROS): about a minute"
-	@$(ROS)/bin/python -m pip --disable-pip-version-check -qq install --editable '.[ros2,ros2-dev]' && touch $@
+	@$(ROS)/bin/python -m pip --disable-pip-version-check -qq install --editable '.[mujoco,ros2,ros2-dev]' && touch $@

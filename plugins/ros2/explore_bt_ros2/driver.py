@@ -10,7 +10,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import API_VERSION, Driver, Finding, PluginOptions, Request, RobotContext, Sink
-from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt.types import BodyShape, Measurement, MotionLimits, Pose2, Twist2
 from explore_bt_ros2.clock import RosClock, SimTimeClock
 from explore_bt_ros2.commander import Commander
 from explore_bt_ros2.connection import Connection
@@ -80,7 +80,7 @@ class Ros2(Driver):
         self._start = context.start or Pose2.identity()
         if options.outputs:
             self._services = Services(link, waits=options.start_when_asked)
-            self._outputs = (Ros2Outputs(self._connection, context.robot),)
+            self._outputs = (Ros2Outputs(self._connection, self._services, context.robot),)
         link.start()
         if isinstance(clock, SimTimeClock) and not clock.wait_for_first(_CLOCK_TIMEOUT_S):
             self.close()
@@ -111,6 +111,11 @@ class Ros2(Driver):
     def footprint_radius_m(self) -> float:
         """As the options say."""
         return self._options.radius
+
+    @property
+    def shape(self) -> BodyShape:
+        """As the options say."""
+        return self._options.shape
 
     @property
     def limits(self) -> MotionLimits:

@@ -35,6 +35,8 @@ _DOUBT_S = 2.0
 _DEPTH = 50
 _POLL_S = 0.02
 
+_CLOUD = MESSAGES["sensor_msgs/msg/PointCloud2"]
+
 Decode = Callable[[Any], Measurement | None]
 
 
@@ -212,7 +214,7 @@ class Senses:
         return replace(measured, stamp_s=min(stamp_s, arrived_s))
 
     def _measure(self, of: Callable[..., Measurement], message: Any) -> Measurement:
-        return of(message, self._places, None)
+        return of(message, self._places, self._options.cloud_range if of is _CLOUD else None)
 
     def _battery(self, message: Any) -> Measurement | None:
         charge = float(message.percentage)
