@@ -32,9 +32,10 @@ def test_a_robot_that_is_not_there_is_told_topic_by_topic_with_what_to_type():
 
 def test_a_robot_that_is_there_is_described_and_wrong_names_are_mended(tmp_path):
     (tmp_path / "hall.yaml").write_text(HALL)
-    with robot_in(tmp_path / "hall.yaml", "--wall-time", "--stamped"):
+    with robot_in(tmp_path / "hall.yaml", "--wall-time", "--stamped", "--tf-topic", "hall/tf"):
         told = check()
         assert told.exit_code == 1
+        assert "→ driver: {tf_topic: /hall/tf}" in told.output
         rate = re.search(r"sensor_msgs/msg/LaserScan, ([\d.]+) Hz, frame laser", told.output)
         assert rate, told.output
         assert float(rate[1]) == pytest.approx(10.0, abs=2.0)  # of few scans, on a machine with other work

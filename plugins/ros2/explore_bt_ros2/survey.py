@@ -20,6 +20,7 @@ _SLOWEST_LIDAR_HZ = 4.0
 _LATE_S = 0.3
 _POLL_S = 0.1
 _OPTIONAL = "not needed; name its topic if the robot has one"
+_TF = "tf2_msgs/msg/TFMessage"
 _STAMPED = "geometry_msgs/msg/TwistStamped"
 
 
@@ -100,12 +101,22 @@ def _transforms(connection: Connection) -> Iterator[Finding]:
     if stamp_s is None:
         needed = not options.odom_topic
         frames = ", ".join(buffer.frames()) or "none"
-        yield Finding(
-            name, f"missing; frames on tf: {frames}", needed, "name odom_topic" if needed else _OPTIONAL
-        )
+        other = _other_tf(connection)
+        named = f"driver: {{tf_topic: {other}}}" if other else "name odom_topic"
+        hint = named if needed or other else _OPTIONAL
+        yield Finding(name, f"missing; frames on {options.tf_topic}: {frames}", needed, hint)
     else:
         age_s = connection.clock.now_s() - connection.clock.mission_s(stamp_s)
         yield Finding(name, f"{1e3 * max(age_s, 0.0):.0f} ms old" if np.isfinite(stamp_s) else "fixed")
+
+
+def _other_tf(connection: Connection) -> str:
+    """Another topic on which somebody tells transforms that move; empty if there is none."""
+    ours = connection.link.full_name(connection.options.tf_topic)
+    node = connection.link.node
+    names = [name for name, kinds in node.get_topic_names_and_types() if _TF in kinds]
+    others = [name for name in names if name != ours and not name.endswith("_static")]
+    return next((name for name in others if node.count_publishers(name)), "")
 
 
 def _commands(connection: Connection) -> Finding:
