@@ -12,7 +12,7 @@ from explore_bt.errors import PluginError
 from explore_bt.interfaces import API_VERSION, Driver, Finding, PluginOptions, Request, RobotContext, Sink
 from explore_bt.types import BodyShape, Measurement, MotionLimits, Pose2, Twist2
 from explore_bt_ros2.clock import RosClock, SimTimeClock
-from explore_bt_ros2.commander import Commander
+from explore_bt_ros2.commander import COMMAND_LIFE_S, Commander
 from explore_bt_ros2.connection import Connection
 from explore_bt_ros2.crew import Crew
 from explore_bt_ros2.link import Link
@@ -106,6 +106,11 @@ class Ros2(Driver):
     def command_delay_s(self) -> float:
         """As the options say."""
         return self._options.command_delay
+
+    @property
+    def command_life_s(self) -> float:
+        """Until the zero that is sent where no other command comes."""
+        return COMMAND_LIFE_S
 
     @property
     def footprint_radius_m(self) -> float:
