@@ -57,6 +57,8 @@ class Relay:
         self.odometry: list[tuple[float, float, float]] = []
         self._clock_s: float | None = None
         self._moved = threading.Condition()
+        self._then: Callable[[], None] | None = None
+        self._then_s = 0.0
         self._odoms = link.publisher(Odometry, "odom", _PASSED_ON)
         self._imus = link.publisher(Imu, "imu", _PASSED_ON)
         self._base = link.publisher(TwistStamped, "real/cmd_vel", QoSProfile(depth=1))
@@ -104,6 +106,17 @@ class Relay:
         with self._moved:
             return self._moved.wait_for(rests, deadline_s)
 
+    def right_after_a_scan(self, begin: Callable[[], None], deadline_s: float) -> float:
+        """Have ``begin`` called when a scan has just been passed on, the worst moment; when that was.
+
+        Returns:
+            Seconds of the ROS clock.
+        """
+        with self._moved:
+            self._then = begin
+            assert self._moved.wait_for(lambda: self._then is None, deadline_s), "no scan comes"
+        return self._then_s
+
     def close(self) -> None:
         self._link.close()
 
@@ -113,6 +126,11 @@ class Relay:
     def _on_scan(self, message: Any) -> None:
         for each in self.scan(message):
             self._scans.publish(each)
+        with self._moved:
+            if self._then is not None:
+                self._then()
+                self._then, self._then_s = None, self.now_s()
+                self._moved.notify_all()
 
     def _on_odom(self, message: Any) -> None:
         place = message.pose.pose.position

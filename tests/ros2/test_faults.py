@@ -79,11 +79,20 @@ def mission_of(folder: Path, options: str) -> Iterator[tuple[Process, Process]]:
         yield robot, mission
 
 
-def stopped(relay: Relay, begin: Callable[[], None], end: Callable[[], None]) -> tuple[float, str]:
-    """After how many seconds of the ROS clock a fault makes the robot brake, and what is wrong with that."""
+def stopped(
+    relay: Relay,
+    at: Callable[[Callable[[], None]], float],
+    begin: Callable[[], None],
+    end: Callable[[], None],
+) -> tuple[float, str]:
+    """After how many seconds of the ROS clock a fault makes the robot brake, and what is wrong with that.
+
+    Args:
+        at: calls ``begin`` at some moment, and says when that was.
+        begin, end: of the fault.
+    """
     relay.wait_for_speed(MOVING_MPS, 60.0)
-    begin()
-    begin_s = relay.now_s()
+    begin_s = at(begin)
     rests = relay.wait_for_rest(begin_s, 30.0)
     end()
     sent = [(sent_s, abs(v)) for sent_s, v, _ in relay.commands if sent_s >= begin_s - 0.2]
@@ -115,7 +124,10 @@ def test_every_fault_of_a_topic_stops_the_robot_with_its_reason_and_it_goes_on(r
         "the emergency stop is pressed": (lambda: relay.press(True), lambda: relay.press(False)),
     }
     with mission_of(tmp_path, 'odom_topic: ""') as (robot, mission):
-        found = {words: stopped(relay, begin, end) for words, (begin, end) in faults.items()}
+        found = {
+            words: stopped(relay, lambda fault: relay.right_after_a_scan(fault, 30.0), *fault)
+            for words, fault in faults.items()
+        }
         relay.wait_for_speed(MOVING_MPS, 60.0)
         relay.scan = spoilt.flood
         count = len(relay.commands)
@@ -156,7 +168,12 @@ def test_a_lidar_that_is_killed_stops_the_robot_and_one_that_comes_back_with_oth
     relay, tmp_path
 ):
     with lidar_node() as lidar, mission_of(tmp_path, "reliability: reliable") as (robot, mission):
-        took_s, fault = stopped(relay, lidar.kill, lidar.wait)
+
+        def now(fault: Callable[[], None]) -> float:
+            fault()
+            return relay.now_s()
+
+        took_s, fault = stopped(relay, now, lidar.kill, lidar.wait)
         assert (took_s <= STOP_S, fault) == (True, ""), took_s
         with lidar_node("best_effort"):
             until_told = relay.now_s() + 3.0
