@@ -53,3 +53,15 @@ def test_a_robot_that_is_there_is_described_and_wrong_names_are_mended(tmp_path)
         assert "→ driver: {scan_topic: /scan}" in told.output
         assert "QoS mismatch: the other side offers another reliability" in told.output
         assert "1 listening" in told.output
+
+
+def test_a_lidar_that_is_too_slow_for_the_silence_allowed_is_told_with_what_to_set(tmp_path):
+    (tmp_path / "hall.yaml").write_text(HALL)
+    mission = tmp_path / "slow.yaml"
+    text = Path(MISSION).read_text()
+    mission.write_text(text.replace("driver: {use: ros2,", "driver: {use: ros2, silence: 0.1 s,"))
+    copytree(Path(MISSION).parent / "trees", tmp_path / "trees")
+    with robot_in(tmp_path / "hall.yaml", "--wall-time"):
+        told = CliRunner().invoke(app, ["check", str(mission), "--robot", "--listen", "1.5"])
+    assert told.exit_code == 1
+    assert re.search(r"Hz is slow for driving: set silence: 0\.[12]\d s", told.output), told.output

@@ -16,7 +16,8 @@ from explore_bt_ros2.stamps import seconds_of
 
 __all__ = ["survey"]
 
-_SLOWEST_LIDAR_HZ = 4.0
+_LEAST_TURNS, _TURNS = 1.2, 2.2
+"""Of the lidar in ``silence``: with fewer the robot stops of itself; with so many one may be lost."""
 _LATE_S = 0.3
 _POLL_S = 0.1
 _OPTIONAL = "not needed; name its topic if the robot has one"
@@ -86,9 +87,9 @@ def _topic(
     if len(speakers) > 1:
         words.append(f"{len(speakers)} publishers")
     faults = [refused[topic.name]] if topic.name in refused else []
-    if topic.needed and rate_hz < _SLOWEST_LIDAR_HZ:
-        slow = 2.5 / max(rate_hz, 0.1)
-        faults.append(f"{rate_hz:.1f} Hz is slow for driving: set silence: {slow:.1f} s and a low speed")
+    if topic.needed and rate_hz * connection.options.silence < _LEAST_TURNS:
+        slow = _TURNS / max(rate_hz, 0.1)
+        faults.append(f"{rate_hz:.1f} Hz is slow for driving: set silence: {slow:.2f} s and a low speed")
     if topic.needed and float(np.median(delays_s)) > _LATE_S:
         faults.append("its messages come late")
     return Finding(topic.name, ", ".join(words), bool(faults), "; ".join(faults))
