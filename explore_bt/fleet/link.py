@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import cast
 
 from explore_bt.fleet.messages import MessageError, Presence, Tile, decode, encode
 from explore_bt.fleet.roster import Roster
@@ -142,6 +143,15 @@ class TeamLink:
         budget = self._team.budget_bytes_per_s / 1000.0
         waiting = f", {len(self._queue)} tiles wait" if self._queue else ""
         self._tell("info", "team", f"told {', '.join(parts)} of {budget:.0f} kB/s{waiting}")
+
+    def memory(self) -> Mapping[str, object]:
+        """What the robot has told about its work."""
+        return {"claims": self._claims, "doing": str(self._doing)}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Tell it again."""
+        self._claims = cast("tuple[tuple[float, float], ...]", memory["claims"])
+        self._doing = Doing(str(memory["doing"]))
 
     def close(self) -> None:
         """Leave."""

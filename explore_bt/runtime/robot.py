@@ -142,6 +142,7 @@ class Robot:
             "scores": self.scores,
             "purse": self._purse,
             "tight places": self._tight,
+            "team": self.team,
         }
         self._keeping = RobotKeeping(self.tree, self.blackboard, parts)
         if cut is not None:
