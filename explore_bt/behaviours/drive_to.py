@@ -190,11 +190,11 @@ class DriveTo(Leaf):
 
     def _plan_around_mate(self, mate: Mate) -> Status:
         self._mate_plans += 1
+        if self._mate_plans > _MATE_PLANS:
+            return self._give_way_to(mate)
         try:
             self._path = self.robot.plan(self.goal.pose, self._via)
         except (PlanningFailure, ComponentFailure):
-            return self._give_way_to(mate)
-        if self._mate_plans > _MATE_PLANS:
             return self._give_way_to(mate)
         self.robot.pilot.follow(self._path)
         self.say(f"around {mate.name}: {self._path.length_m:.1f} m")

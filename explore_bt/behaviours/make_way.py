@@ -107,16 +107,7 @@ class MakeWay(Leaf):
         if place is None:
             self.say("waiting here: no place is farther out of the way")
             return False
-        here = robot.estimate().T_map_base
-        yaw = math.atan2(place[1] - here.y, place[0] - here.x)
-        try:
-            path = robot.plan(Pose2(*place, yaw))
-        except (PlanningFailure, ComponentFailure) as refusal:
-            self.say(f"waiting here: no way aside, {refusal}")
-            return False
-        robot.pilot.follow(path)
-        self.say(f"{path.length_m:.1f} m aside, to ({place[0]:.1f}, {place[1]:.1f})")
-        return True
+        return self._drive_off(place, "aside")
 
     def _leave_course(self, mate: Mate) -> bool:
         """Drive off its path; where no place is, ask for the way."""
@@ -135,14 +126,19 @@ class MakeWay(Leaf):
         if math.dist(place, here.xy) < _HERE_M:
             self.say(f"off {mate.name}'s way already")
             return False
+        return self._drive_off(place, f"off {mate.name}'s way")
+
+    def _drive_off(self, place: tuple[float, float], where: str) -> bool:
+        """Whether there is a way to that place: the robot is on it then."""
+        here = self.robot.estimate().T_map_base
         yaw = math.atan2(place[1] - here.y, place[0] - here.x)
         try:
-            path = robot.plan(Pose2(*place, yaw))
+            path = self.robot.plan(Pose2(*place, yaw))
         except (PlanningFailure, ComponentFailure) as refusal:
             self.say(f"waiting here: no way aside, {refusal}")
             return False
-        robot.pilot.follow(path)
-        self.say(f"{path.length_m:.1f} m off {mate.name}'s way, to ({place[0]:.1f}, {place[1]:.1f})")
+        self.robot.pilot.follow(path)
+        self.say(f"{path.length_m:.1f} m {where}, to ({place[0]:.1f}, {place[1]:.1f})")
         return True
 
     def _has_passed(self, before: Mate) -> bool:

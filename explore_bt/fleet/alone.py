@@ -47,7 +47,7 @@ class Alone:
     def receive(self, now_s: float) -> None:
         """Nobody speaks."""
 
-    def send(self, presence: object, grid: OccupancyGrid) -> None:
+    def send(self, now_s: float, presence: object, grid: OccupancyGrid) -> None:
         """Nobody listens."""
 
     def claim(self, places: Sequence[tuple[float, float]]) -> None:

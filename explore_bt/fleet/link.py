@@ -116,20 +116,20 @@ class TeamLink:
                 self._roster.take(letter.sender, message, now_s)
         self._tell_of_comings()
 
-    def send(self, presence: Presence, grid: OccupancyGrid) -> None:
+    def send(self, now_s: float, presence: Callable[[], Presence], grid: OccupancyGrid) -> None:
         """Tell where the robot is, and as many changed tiles as the budget allows.
 
         Args:
-            presence: without claims, doing and priority, which the link knows.
+            now_s: its stamp.
+            presence: tells it, without claims, doing and priority, which the link knows.
             grid: the robot's own map.
         """
-        now_s = presence.stamp_s
         if self._began_s is None:
             self._began_s = self._filled_s = now_s
         budget = self._team.budget_bytes_per_s
         self._allowance = min(self._allowance + budget * (now_s - self._filled_s), budget * _BURST_S)
         self._filled_s = now_s
-        told = replace(presence, claims=self._claims, doing=self._doing, yields=self.yields)
+        told = replace(presence(), claims=self._claims, doing=self._doing, yields=self.yields)
         self._say(PRESENCE, PRESENCE, encode(told))
         self._cut(grid, now_s)
         while self._queue and self._allowance > 0.0:

@@ -385,12 +385,20 @@ class Robot:
         self.pilot.mates = self._senses.mates = self.team.near
 
     def _tell_team(self, now_s: float, dt_s: float) -> None:
+        self.team.send(now_s, lambda: self._presence(now_s, dt_s), self.slam.grid())
+
+    def _presence(self, now_s: float, dt_s: float) -> Presence:
         here = self.pilot.predict(self.estimate(), now_s).T_map_base
-        stop, ahead = self.pilot.stop_places(here, dt_s), self.pilot.places_ahead(here)
-        speed_mps = self._limits.speed_mps
-        twist, radius_m = self.pilot.motion.twist, self.footprint_radius_m
-        presence = Presence(now_s, now_s + dt_s, here, twist, radius_m, speed_mps, stop, ahead)
-        self.team.send(presence, self.slam.grid())
+        return Presence(
+            now_s,
+            now_s + dt_s,
+            here,
+            self.pilot.motion.twist,
+            self.footprint_radius_m,
+            self._limits.speed_mps,
+            stop=self.pilot.stop_places(here, dt_s),
+            ahead=self.pilot.places_ahead(here),
+        )
 
     def _read(self) -> Sequence[Measurement]:
         try:

@@ -129,14 +129,9 @@ def with_mates(grid: OccupancyGrid, mates: Sequence[Mate], here: Pose2, radius_m
         x, y = mate.T_map_base.xy
         gap_m = np.hypot(here.x - x, here.y - y) - radius_m - grid.resolution_m
         reach_m = min(mate.radius_m + _ROOM_M, gap_m)
-        row, col = grid.cell_of(x, y)
-        n = int(np.ceil((mate.radius_m + _ROOM_M) / grid.resolution_m)) + 1
-        rows = slice(max(row - n, 0), max(row + n + 1, 0))
-        cols = slice(max(col - n, 0), max(col + n + 1, 0))
-        window = cells[rows, cols]
-        if not window.size:
-            continue
-        local = np.argwhere(np.ones(window.shape, dtype=np.bool_))
-        off_m = grid.centers_of(local + np.array([rows.start, cols.start])) - (x, y)
-        window[np.hypot(off_m[:, 0], off_m[:, 1]).reshape(window.shape) <= reach_m] = OCCUPIED
+        window = grid.window_around(x, y, mate.radius_m + _ROOM_M + grid.resolution_m)
+        part = cells[window.slices]
+        local = np.argwhere(np.ones(part.shape, dtype=np.bool_))
+        off_m = grid.centers_of(local + np.array([window.row0, window.col0])) - (x, y)
+        part[np.hypot(off_m[:, 0], off_m[:, 1]).reshape(part.shape) <= reach_m] = OCCUPIED
     return replace(grid, cells=cells)

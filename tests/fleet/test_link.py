@@ -78,7 +78,7 @@ class Member:
     def speak(self, now_s: float, xy: tuple[float, float] = (0.0, 0.0)) -> None:
         pose = Pose2(*xy, 0.0)
         told = Presence(now_s, now_s + 0.05, pose, Twist2(), 0.25, 0.5, np.array([xy]), NOWHERE)
-        self.link.send(told, self.slam.grid())
+        self.link.send(now_s, lambda: told, self.slam.grid())
 
 
 @pytest.fixture
