@@ -69,7 +69,7 @@ class Team(Plugin):
         return {}
 
     @classmethod
-    def router(cls, listen: Sequence[str]) -> AbstractContextManager[None]:
+    def router(cls, listen: Sequence[str]) -> AbstractContextManager[None]:  # noqa: ARG003  # for those that have one
         """While inside, this process passes on what robots say that do not reach one another.
 
         Args:
