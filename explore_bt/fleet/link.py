@@ -38,6 +38,10 @@ class TeamLink:
         allocator: divides the work.
         slam: whose map is told.
         tell: takes level, source and message of an event.
+
+    Attributes:
+        claims: where the robot goes to look, as it tells.
+        doing: what it is about, as it tells.
     """
 
     def __init__(
@@ -64,8 +68,8 @@ class TeamLink:
         self._cut_s = -_TILES_PERIOD_S
         self._allowance = self._filled_s = 0.0
         self._now_s = 0.0
-        self._claims: tuple[tuple[float, float], ...] = ()
-        self._doing = Doing.AT_WORK
+        self.claims: tuple[tuple[float, float], ...] = ()
+        self.doing = Doing.AT_WORK
         self._insists_until_s = -1.0
         self._strangers: set[str] = set()
         self._present: frozenset[str] = frozenset()
@@ -91,11 +95,11 @@ class TeamLink:
 
     def claim(self, places: Sequence[tuple[float, float]]) -> None:
         """Told with the next presence."""
-        self._claims = tuple(places)
+        self.claims = tuple(places)
 
     def say_doing(self, doing: Doing) -> None:
         """Told with the next presence."""
-        self._doing = doing
+        self.doing = doing
 
     def insist(self, until_s: float) -> None:
         """Told with the next presence."""
@@ -141,7 +145,7 @@ class TeamLink:
         budget = self._team.budget_bytes_per_s
         self._allowance = min(self._allowance + budget * (now_s - self._filled_s), budget * _BURST_S)
         self._filled_s = now_s
-        told = replace(presence(), claims=self._claims, doing=self._doing, yields=self.yields)
+        told = replace(presence(), claims=self.claims, doing=self.doing, yields=self.yields)
         self._say(PRESENCE, PRESENCE, encode(told))
         if not self._team.shares_clock and now_s - self._compared_s > _CLOCKS_PERIOD_S - 1e-6:
             self._compared_s = now_s
@@ -163,12 +167,12 @@ class TeamLink:
 
     def memory(self) -> Mapping[str, object]:
         """What the robot has told about its work."""
-        return {"claims": self._claims, "doing": str(self._doing)}
+        return {"claims": self.claims, "doing": str(self.doing)}
 
     def restore(self, memory: Mapping[str, object]) -> None:
         """Tell it again."""
-        self._claims = cast("tuple[tuple[float, float], ...]", memory["claims"])
-        self._doing = Doing(str(memory["doing"]))
+        self.claims = cast("tuple[tuple[float, float], ...]", memory["claims"])
+        self.doing = Doing(str(memory["doing"]))
 
     def close(self) -> None:
         """Leave."""

@@ -358,6 +358,8 @@ class Robot:
             moving=self.moving,
             budgets=self.budgets(),
             charge=self._purse.charge,
+            doing=self.team.doing,
+            claims=self.team.claims,
         )
 
     def tell(self, level: str, source: str, message: str) -> None:

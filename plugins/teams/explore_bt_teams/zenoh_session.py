@@ -10,6 +10,13 @@ from explore_bt.errors import PluginError
 
 __all__ = ["imported", "opened"]
 
+_RETURN = {
+    "transport/unicast/open_timeout": "2500",
+    "transport/unicast/accept_timeout": "2500",
+    "connect/retry": "{period_init_ms: 500, period_max_ms: 1000, period_increase_factor: 2}",
+}
+"""Milliseconds; of the four words of a greeting one is easily lost, and zenoh would wait for it for 10 s."""
+
 
 def imported() -> Any:
     """The library.
@@ -40,6 +47,8 @@ def opened(mode: str, *, listen: Sequence[str], connect: Sequence[str] = (), mul
     config = zenoh.Config()
     config.insert_json5("mode", f'"{mode}"')
     config.insert_json5("scouting/multicast/enabled", "true" if multicast else "false")
+    for key, value in _RETURN.items():
+        config.insert_json5(key, value)
     for key, endpoints in (("connect", connect), ("listen", listen)):
         if endpoints:
             config.insert_json5(f"{key}/endpoints", json.dumps(list(endpoints)))
