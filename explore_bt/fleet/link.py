@@ -93,6 +93,11 @@ class TeamLink:
         """Below 0 while it insists."""
         return _INSISTS if self._now_s < self._insists_until_s else 0
 
+    @property
+    def lag_s(self) -> float:
+        """How old words have lately been when heard, at most; 0 alone, or where all have one clock."""
+        return min(self._ages.recent_s, NEAR_S) if self._present else 0.0
+
     def claim(self, places: Sequence[tuple[float, float]]) -> None:
         """Told with the next presence."""
         self.claims = tuple(places)

@@ -26,7 +26,7 @@ from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.team_mate import first_path, grids_to_try, standing
-from explore_bt.runtime.team_place import presence_of, team_place
+from explore_bt.runtime.team_place import give_word, presence_of, team_place
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.runtime.upright import Upright
@@ -387,6 +387,7 @@ class Robot:
         self.pilot.mates = self._senses.mates = self.team.near
 
     def _tell_team(self, now_s: float, dt_s: float) -> None:
+        give_word(self.pilot, self.team, now_s)
         about = (self.footprint_radius_m, self._limits.speed_mps, now_s, dt_s)
         self.team.send(now_s, lambda: presence_of(self.pilot, self.estimate(), *about), self.slam.grid())
 
