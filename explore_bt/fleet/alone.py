@@ -29,6 +29,7 @@ class Alone:
 
     yields = 0
     lag_s = 0.0
+    is_paused = False
 
     def __init__(self, name: str = "robot", allocator: Allocator | None = None) -> None:
         self.name = name

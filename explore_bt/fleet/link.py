@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import cast
 
+import numpy as np
+
 from explore_bt.fleet.clocks import Clocks, WordAges
 from explore_bt.fleet.messages import MessageError, Presence, Tile, decode, encode
 from explore_bt.fleet.roster import Roster
@@ -40,8 +42,7 @@ class TeamLink:
         tell: takes level, source and message of an event.
 
     Attributes:
-        claims: where the robot goes to look, as it tells.
-        doing: what it is about, as it tells.
+        is_paused: it stands until somebody lets it go on: it tells neither claims nor a way ahead.
     """
 
     def __init__(
@@ -68,8 +69,9 @@ class TeamLink:
         self._cut_s = -_TILES_PERIOD_S
         self._allowance = self._filled_s = 0.0
         self._now_s = 0.0
-        self.claims: tuple[tuple[float, float], ...] = ()
-        self.doing = Doing.AT_WORK
+        self._claims: tuple[tuple[float, float], ...] = ()
+        self._doing = Doing.AT_WORK
+        self.is_paused = False
         self._insists_until_s = -1.0
         self._strangers: set[str] = set()
         self._present: frozenset[str] = frozenset()
@@ -94,17 +96,27 @@ class TeamLink:
         return _INSISTS if self._now_s < self._insists_until_s else 0
 
     @property
+    def claims(self) -> tuple[tuple[float, float], ...]:
+        """Where the robot goes to look, as it tells: nowhere while it is paused."""
+        return () if self.is_paused else self._claims
+
+    @property
+    def doing(self) -> Doing:
+        """What the robot is about, as it tells."""
+        return Doing.PAUSED if self.is_paused else self._doing
+
+    @property
     def lag_s(self) -> float:
         """How old words have lately been when heard, at most; 0 alone, or where all have one clock."""
         return min(self._ages.recent_s, NEAR_S) if self._present else 0.0
 
     def claim(self, places: Sequence[tuple[float, float]]) -> None:
         """Told with the next presence."""
-        self.claims = tuple(places)
+        self._claims = tuple(places)
 
     def say_doing(self, doing: Doing) -> None:
         """Told with the next presence."""
-        self.doing = doing
+        self._doing = doing
 
     def insist(self, until_s: float) -> None:
         """Told with the next presence."""
@@ -151,6 +163,8 @@ class TeamLink:
         self._allowance = min(self._allowance + budget * (now_s - self._filled_s), budget * _BURST_S)
         self._filled_s = now_s
         told = replace(presence(), claims=self.claims, doing=self.doing, yields=self.yields)
+        if self.is_paused:
+            told = replace(told, ahead=np.empty((0, 2)))
         self._say(PRESENCE, PRESENCE, encode(told))
         if not self._team.shares_clock and now_s - self._compared_s > _CLOCKS_PERIOD_S - 1e-6:
             self._compared_s = now_s
@@ -172,12 +186,12 @@ class TeamLink:
 
     def memory(self) -> Mapping[str, object]:
         """What the robot has told about its work."""
-        return {"claims": self.claims, "doing": str(self.doing)}
+        return {"claims": self._claims, "doing": str(self._doing)}
 
     def restore(self, memory: Mapping[str, object]) -> None:
         """Tell it again."""
-        self.claims = cast("tuple[tuple[float, float], ...]", memory["claims"])
-        self.doing = Doing(str(memory["doing"]))
+        self._claims = cast("tuple[tuple[float, float], ...]", memory["claims"])
+        self._doing = Doing(str(memory["doing"]))
 
     def close(self) -> None:
         """Leave."""

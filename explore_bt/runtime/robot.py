@@ -282,7 +282,7 @@ class Robot:
         self._held_s += dt_s
         self._keep_score(now_s, dt_s)
         self._hear_team()
-        self._tell_team(now_s, dt_s)
+        self._tell_team(now_s, dt_s, is_paused=True)
 
     def watch_ticks(self, probe: Probe) -> None:
         """Have ``probe`` asked before and after every tick of every node of the tree."""
@@ -386,7 +386,8 @@ class Robot:
         self.team.receive(self._clock_s())
         self.pilot.mates = self._senses.mates = self.team.near
 
-    def _tell_team(self, now_s: float, dt_s: float) -> None:
+    def _tell_team(self, now_s: float, dt_s: float, *, is_paused: bool = False) -> None:
+        self.team.is_paused = is_paused
         give_word(self.pilot, self.team, now_s)
         about = (self.footprint_radius_m, self._limits.speed_mps, now_s, dt_s)
         self.team.send(now_s, lambda: presence_of(self.pilot, self.estimate(), *about), self.slam.grid())
