@@ -132,6 +132,20 @@ def test_two_head_on_stand_and_name_each_other() -> None:
     ]
 
 
+@pytest.mark.parametrize(("bob_x", "held_by"), [(0.72, HeldBy.MATE), (-0.8, HeldBy.OBSTACLE)])
+def test_returns_just_beside_a_mate_are_its_own_and_all_others_an_obstacle(
+    bob_x: float, held_by: HeldBy
+) -> None:
+    gate = SafetyGate(RADIUS, LIMITS)
+    gate.mates = (mate((bob_x, 0.0)),)
+    for _ in range(3):
+        gate.see(Surroundings(0.0, np.array([(0.251, 0.0)]), open_floor()), Pose2(0, 0, 0))
+    decision = gate.decide(towards(Twist2(0.5, 0.0), MotionState()), Pose2(0, 0, 0), MotionState(), DT)
+    assert decision.reason
+    assert decision.held_by is held_by
+    assert gate.in_the_way == ("bob" if held_by is HeldBy.MATE else "")
+
+
 def test_who_stands_too_near_may_drive_off_and_not_nearer() -> None:
     near = [mate((0.52, 0.0))]
     away = np.column_stack((np.linspace(0.0, -0.3, 10), np.zeros((10, 2))))
