@@ -3,8 +3,9 @@
     python benchmarks/fleet_network.py [CASE...] [--out DIR]
 
 Two simulated robots explore the flat, each in its own process, over Zenoh. ``loopback`` is this machine's
-own network; ``tcp`` and ``udp`` go over a cable between two network namespaces, with 200 ms each way, a loss
-of 10 % and 50 kB/s, and are cut off for 30 s where they are called so. In the other cases somebody is killed.
+own network; ``tcp`` and ``both`` (with UDP beside it) go over a cable between two network namespaces, with
+200 ms each way, a loss of 10 % and 50 kB/s, and are cut off for 30 s where they are called so. In the other
+cases somebody is killed.
 """
 
 from __future__ import annotations
@@ -120,7 +121,6 @@ class Case:
 
     doings: Doings
     trouble: Trouble | None = None
-    protocol: str = "tcp"
     team: str = "connect: [$env.FLEET_CONNECT], listen: [$env.FLEET_LISTEN]"
 
 
@@ -150,7 +150,7 @@ def _run(name: str, folder: Path) -> Row:
     case = CASES[name]
     with _laid(case.trouble) as laid:
         fleet = Fleet.of(folder, _mission(case.team), {"world.yaml": _world()})
-        _introduce(fleet, case.protocol, laid.addresses if laid else (_HERE, _HERE))
+        _introduce(fleet, laid.addresses if laid else (_HERE, _HERE))
         with running(fleet):
             apart = case.doings(fleet, laid)
         begun_s = min(fleet.track(robot).times_s[0] for robot in ("ada", "bob"))
@@ -159,10 +159,15 @@ def _run(name: str, folder: Path) -> Row:
     return _row(name, fleet, apart, sent)
 
 
-def _introduce(fleet: Fleet, protocol: str, hosts: Sequence[str]) -> None:
-    ends = [f"{protocol}/{host}:{free_port()}" for host in hosts]
+def _introduce(fleet: Fleet, hosts: Sequence[str]) -> None:
+    ends = [f"{host}:{free_port()}" for host in hosts]
     for robot, own, other in (("ada", *ends), ("bob", *ends[::-1])):
-        fleet.environs[robot] = {"FLEET_LISTEN": own, "FLEET_CONNECT": other}
+        fleet.environs[robot] = {
+            "FLEET_LISTEN": f"tcp/{own}",
+            "FLEET_CONNECT": f"tcp/{other}",
+            "FLEET_UDP_LISTEN": f"udp/{own}",
+            "FLEET_UDP_CONNECT": f"udp/{other}",
+        }
 
 
 def _awaited(folder: Path) -> str:
@@ -173,7 +178,7 @@ def _awaited(folder: Path) -> str:
     registry = load_plugins().registry
     mission = load_mission(folder / "explore.yaml", registry)
     run_mission(mission, registry=registry, out=folder / "known", seed=0, sinks=(), stop=StopFlag())
-    _introduce(fleet, "tcp", (_HERE, _HERE))
+    _introduce(fleet, (_HERE, _HERE))
     with running(fleet):
         _start(fleet, None)
         _until(lambda: any(words.startswith("team mate ada") for words in fleet.track("bob").gate), 120.0)
@@ -391,13 +396,17 @@ def _line(row: Row) -> str:
     return f"| {' | '.join(cells)} |"
 
 
+_BOTH = (
+    "connect: [$env.FLEET_CONNECT, $env.FLEET_UDP_CONNECT], "
+    "listen: [$env.FLEET_LISTEN, $env.FLEET_UDP_LISTEN]"
+)
 _CLIENTS = "mode: client, connect: [$env.FLEET_CONNECT]"
 CASES: dict[str, Case] = {
     "loopback": Case(_let_be),
     "tcp": Case(_let_be, BAD),
-    "udp": Case(_let_be, BAD, "udp"),
     "tcp-cut": Case(_cut, BAD),
-    "udp-cut": Case(_cut, BAD, "udp"),
+    "both": Case(_let_be, BAD, team=_BOTH),
+    "both-cut": Case(_cut, BAD, team=_BOTH),
     "killed": Case(_kill_one),
     "router": Case(_kill_router, team=_CLIENTS),
 }
