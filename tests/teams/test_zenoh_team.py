@@ -77,35 +77,8 @@ def test_clients_hear_one_another_through_a_router_and_again_once_it_has_come_ba
     assert found == {"presence": b"still here", "tile/0/0": b"said to nobody"}
 
 
-def test_what_is_said_often_goes_over_udp_and_the_rest_over_tcp() -> None:
-    """Who comes late hears the newest of both."""
-    name = f"fleet{next(FLEETS)}"
-    ends = [f"127.0.0.1:{free_port()}" for _ in range(2)]
-    with ExitStack() as ending:
-        teams = []
-        for robot, own, other in (("ada", *ends), ("bob", *ends[::-1])):
-            both = {"listen": (f"tcp/{own}", f"udp/{own}"), "connect": (f"tcp/{other}", f"udp/{other}")}
-            team = ZenohTeam(ZenohOptions(fleet=name, multicast=False, **both))
-            ending.callback(team.close)
-            team.setup(RobotContext(robot=robot, commons=Commons()))
-            teams.append(team)
-            team.say("tile/0/0", b"first")
-            team.say_often("presence", robot.encode())
-        found: dict[str, bytes] = {}
-        clock = WallClock()
-        while found != {"tile/0/0": b"second", "presence": b"99"} and clock.now_s() < 30.0:
-            teams[0].say("tile/0/0", b"second")
-            teams[0].say_often("presence", b"99")
-            found |= {letter.topic: letter.payload for letter in teams[1].hear()}
-            clock.wait_until(clock.now_s() + 0.05)
-        links = teams[1]._session.info.links()
-        uses = {(link.src.partition("/")[0], str(link.reliability)) for link in links}
-    assert found == {"tile/0/0": b"second", "presence": b"99"}
-    assert uses == {("tcp", "Reliability.RELIABLE"), ("udp", "Reliability.BEST_EFFORT")}
-
-
-def test_udp_alone_is_refused_for_it_loses_what_must_not_be_lost() -> None:
-    with pytest.raises(ValidationError, match="listen: udp/ alone loses what must not be lost"):
+def test_udp_is_refused_for_it_loses_who_wants_to_hear_whom() -> None:
+    with pytest.raises(ValidationError, match=r"a robot stays deaf; write tcp/127.0.0.1:7447"):
         ZenohOptions(listen=("udp/127.0.0.1:7447",))
 
 

@@ -54,14 +54,9 @@ def opened(
     config.insert_json5("connect/retry", _RETRY % (600 + zlib.crc32(name.encode()) % 1500))
     for key, value in _RETURN.items():
         config.insert_json5(key, value)
-    has_two = any(each.startswith("udp/") for each in (*connect, *listen))
-    if has_two:
-        config.insert_json5("transport/unicast/max_links", "2")
     for key, endpoints in (("connect", connect), ("listen", listen)):
         if endpoints:
-            config.insert_json5(
-                f"{key}/endpoints", json.dumps([_with_use(each) if has_two else each for each in endpoints])
-            )
+            config.insert_json5(f"{key}/endpoints", json.dumps(list(endpoints)))
     try:
         return zenoh.open(config)
     except zenoh.ZError as refusal:
@@ -69,8 +64,3 @@ def opened(
             f"team zenoh: no session: {refusal}. Check connect, listen and multicast, and that a router "
             "runs if mode is client: explore-bt router"
         ) from None
-
-
-def _with_use(endpoint: str) -> str:
-    """UDP for what may be lost, anything else for what may not."""
-    return endpoint if "?" in endpoint else f"{endpoint}?rel={0 if endpoint.startswith('udp/') else 1}"

@@ -34,19 +34,17 @@ class ZenohOptions(TeamOptions):
     """Where the others are; without any, they are looked for by multicast."""
 
     mode: str = Field("peer", pattern="peer|client", description="client: everything goes through a router")
-    connect: tuple[str, ...] = Field(
-        (), description="endpoints to go to: tcp/192.168.1.1:7447, and udp/ beside it on a bad radio"
-    )
+    connect: tuple[str, ...] = Field((), description="endpoints to go to: tcp/192.168.1.1:7447")
     listen: tuple[str, ...] = Field((), description="endpoints to be reached at; tcp/127.0.0.1:0 stays here")
     multicast: bool = Field(True, description="look for peers on the local network")
 
     @model_validator(mode="after")
-    def _has_a_way_that_loses_nothing(self) -> ZenohOptions:
+    def _loses_nothing(self) -> ZenohOptions:
         for name, endpoints in (("connect", self.connect), ("listen", self.listen)):
-            kinds = {endpoint.partition("/")[0] for endpoint in endpoints}
-            if kinds == {"udp"}:
+            if lossy := [endpoint for endpoint in endpoints if endpoint.startswith("udp/")]:
                 raise ValueError(
-                    f"{name}: udp/ alone loses what must not be lost; write a tcp/ endpoint beside it"
+                    f"{name}: {lossy[0]}: over UDP it may be lost who wants to hear whom, and a robot stays "
+                    f"deaf; write tcp/{lossy[0].removeprefix('udp/')}"
                 )
         return self
 
@@ -54,10 +52,10 @@ class ZenohOptions(TeamOptions):
 class ZenohTeam(Team):
     """Peers that find one another, or clients of a router.
 
-    Where there are endpoints for TCP and UDP, what is said anew all the time goes over UDP, all else over
-    TCP. Words are put and may be dropped. Each bears its number; whoever hears a gap asks that robot for all
-    it has said since, which is the newest of each topic, until nothing of an answer is missing. So do late
-    joiners, and both sides of a partition that has healed.
+    Words are put and may be dropped. Each bears its number; whoever hears a gap asks that robot for all it
+    has said since, which is the newest of each topic, until nothing of an answer is missing. So do late
+    joiners, and both sides of a partition that has healed. Words that are said anew all the time are asked
+    for by nobody.
     """
 
     name = "zenoh"
@@ -126,7 +124,7 @@ class ZenohTeam(Team):
             self._inbox.failed += 1  # it is in ``_said``: who misses it asks
 
     def say_often(self, topic: str, payload: bytes) -> None:
-        """Put where a word that is lost holds up no other, if there is such a link."""
+        """Put, and not asked for if it is lost."""
         session = self._session
         if session is None:
             return
@@ -222,6 +220,15 @@ class ZenohTeam(Team):
     def _ask(self, sender: str, since: int) -> None:
         selector = f"{self._prefix}/{sender}/**?since={since}"
         try:
-            self._session.get(selector, self._take_reply, timeout=_ASK_TIMEOUT_S, target=self._all)
+            drop = (
+                self._zenoh.CongestionControl.DROP
+            )  # it is asked again, and must not hold up the control loop
+            self._session.get(
+                selector,
+                self._take_reply,
+                timeout=_ASK_TIMEOUT_S,
+                target=self._all,
+                congestion_control=drop,
+            )
         except self._zenoh.ZError:
             self._inbox.failed += 1
