@@ -232,7 +232,7 @@ def test_a_paused_robot_is_seen_standing_with_nothing_claimed_and_nowhere_to_go(
 
 
 def test_how_old_words_are_is_asked_only_where_there_is_a_network(said: list[Letter]) -> None:
-    """On a cable that takes no time, the way back takes a step: a word is driven by until the next one comes."""
+    """On a cable that takes no time the way back takes a step, and a word is driven by until the next one."""
     for shares_clock, expected_s in ((True, 0.0), (False, 0.25)):
         said.clear()
         ada, bob = (Member(name, said, shares_clock=shares_clock) for name in ("ada", "bob"))
