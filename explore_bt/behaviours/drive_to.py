@@ -75,6 +75,8 @@ class DriveTo(Leaf):
         Waypoint, default=Key("reached"), doc="the goal; where it was seen from, if the drive stopped early"
     )
 
+    _left: tuple[float, float] | None = None
+
     def initialise(self) -> None:
         """A new drive begins."""
         self._path: Path | None = None
@@ -268,7 +270,11 @@ class DriveTo(Leaf):
         if self.until_seen <= 0.0 or self.robot.now_s() < self._next_look_s:
             return False
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
-        if mate := claimed_before(self.robot, self.goal.position):
+        mate = claimed_before(self.robot, self.goal.position)
+        if (
+            mate and self.goal.position != self._left
+        ):  # chosen once more it shows what the other place does not
+            self._left = self.goal.position
             self.say(f"left to {mate}, which is on its way there too")
             return True
         enough_m2 = _NOTHING_M2 if self._is_scrap else self.until_seen

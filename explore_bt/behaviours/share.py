@@ -15,8 +15,8 @@ from explore_bt.types import Doing, Mate
 __all__ = ["allotted", "claimed_before", "claims_of_others", "free_at", "workers"]
 
 _SAME_M = 1.0
-_SAME_VIEW_M = 0.1
-"""What two places show that are so near is the same: to give one up leads to another view, not back to it."""
+_SAME_VIEW_M = 0.3
+"""What two places show that are so near is mostly the same."""
 
 
 def workers(robot: RobotServices) -> list[Mate]:

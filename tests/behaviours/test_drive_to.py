@@ -241,7 +241,7 @@ def test_a_goal_that_is_seen_is_driven_to_while_a_place_on_the_way_is_not() -> N
 
 @pytest.mark.parametrize(
     ("name", "claimed", "goes_on"),
-    [("ada", (4.0, 0.05), False), ("ada", (4.0, 0.3), True), ("zoe", (4.0, 0.0), True)],
+    [("ada", (4.0, 0.2), False), ("ada", (4.0, 0.4), True), ("zoe", (4.0, 0.0), True)],
     ids=["goes first", "goes elsewhere", "goes second"],
 )
 def test_a_goal_that_a_mate_has_claimed_at_the_same_time_is_left_to_the_one_that_goes_first(
@@ -258,3 +258,10 @@ def test_a_goal_that_a_mate_has_claimed_at_the_same_time_is_left_to_the_one_that
     leaf.tick_once()
     assert leaf.status is (Status.RUNNING if goes_on else Status.SUCCESS)
     assert goes_on or leaf.feedback_message == "left to ada, which is on its way there too"
+    robot.time_s = 3.0
+    leaf.tick_once()
+    robot.time_s = 4.5
+    leaf.tick_once()
+    assert leaf.status is Status.RUNNING, (
+        "if it is chosen again it is driven to: not left and chosen for ever"
+    )
