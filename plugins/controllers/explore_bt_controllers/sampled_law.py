@@ -11,7 +11,7 @@ from explore_bt_controllers.nearby import Nearby
 from explore_bt_controllers.noise import NoiseBank
 from explore_bt_controllers.options import MppiOptions
 from explore_bt_controllers.proposals import propose
-from explore_bt_controllers.rollout import Bounds, Prices, Route, Start, World, costs_of
+from explore_bt_controllers.rollout import BLOCK, Bounds, Prices, Route, Start, World, costs_of
 from explore_bt_controllers.speed_ahead import SpeedAhead
 from explore_bt_controllers.track import Leg
 from explore_bt_controllers.wish import Wish, next_linear
@@ -85,7 +85,10 @@ class SampledLaw:
         last = self._last_plan(place)
         if last is not None:
             proposals = np.concatenate((proposals, last[:, :, None].astype(np.float32)), axis=2)
-        costs = costs_of(world, np.zeros((2, options.steps)), proposals, 0, 0, proposals.shape[2])
+        count = proposals.shape[2]
+        block = np.zeros((2, 1, options.steps, BLOCK), dtype=np.float32)
+        block[:, 0, :, :count] = proposals
+        costs = costs_of(world, np.zeros((2, options.steps)), block, (0, 0), count)
         if last is not None:
             costs[-1] -= _LOYALTY
         return proposals[:, :, costs.argmin()].astype(np.float64)
@@ -104,13 +107,10 @@ class SampledLaw:
 
     def _improved(self, plan: NDArray[np.float64], world: World) -> NDArray[np.float64]:
         """(2, K): the plan and the weighted mean of the noise around it."""
-        count, bank = self._options.samples, self._noise.sequences
-        windows = self._noise.windows()
-        costs = costs_of(world, plan, bank, *windows, count)
-        weights = np.exp((costs.min() - costs) / self._options.temperature)
-        weights = (weights / weights.sum()).astype(np.float32)
-        means = [bank[row, :, first : first + count] @ weights for row, first in enumerate(windows)]
-        return plan + np.array(means)
+        options, runs = self._options, self._noise.runs()
+        costs = costs_of(world, plan, self._noise.sequences, runs, options.samples)
+        weights = np.exp((costs.min() - costs) / options.temperature)
+        return plan + self._noise.mean(runs, (weights / weights.sum()).astype(np.float32))
 
     def _world(self, place: Place, motion: MotionState, limits: MotionLimits) -> World:
         options = self._options
