@@ -181,7 +181,7 @@ def _costs(world, targets, noise, first_v, first_w, count):  # type: ignore[no-u
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _roll(world, targets, asked_v, asked_w, state, found, at):  # type: ignore[no-untyped-def]  # numba kernel
-    """(BLOCK,) prices per second of one block of samples, summed over the steps; the last three are scratch."""
+    """(BLOCK,) prices per second of a block of samples, summed over the steps; the last three are scratch."""
     start, bounds, route, field, moving, prices, step_s = world
     x, y, c, s, v, a, w, b = state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7]
     way, turn, cost, room = state[8], state[9], state[10], state[11]

@@ -22,6 +22,7 @@ _BRAKE_SHARE = 0.5  # of the acceleration, for the speed wanted ahead of slow pl
 _LOYALTY = 0.1  # by which another plan must be cheaper than the one pursued
 _BROKEN_OFF_S = 0.3  # after a pause as long as this the last plan is of no use
 _WAITING_MPS = 0.05
+_STRAIGHTEN_S = 0.5  # in which who waits turns to the path, at most: faster they would turn past it
 _LOOK_M = 1.5  # along the path, for what is tight or in the way
 _SQUEEZE_M = 0.02  # nearer than the path's own clearance: the map's cells are as coarse
 _LEAST_MARGIN_M = -0.03  # the safety gate has the last word
@@ -61,7 +62,10 @@ class SampledLaw:
     def _turn_rate(self, rate_rps: float, linear_mps: float, place: Place) -> float:
         """Who waits for people turns to the path only: else they dance about the robot, and it with them."""
         waits = abs(linear_mps) < _WAITING_MPS and bool(self._nearby.moving)
-        return 0.0 if waits and rate_rps * place.heading_error_rad >= 0.0 else rate_rps
+        if not waits:
+            return rate_rps
+        straight_rps = -place.heading_error_rad / _STRAIGHTEN_S
+        return min(max(rate_rps, min(straight_rps, 0.0)), max(straight_rps, 0.0))
 
     def hindrance(self) -> str:
         """See ``DrivingLaw.hindrance``."""
@@ -110,7 +114,11 @@ class SampledLaw:
         options, runs = self._options, self._noise.runs()
         costs = costs_of(world, plan, self._noise.sequences, runs, options.samples)
         weights = np.exp((costs.min() - costs) / options.temperature)
-        return plan + self._noise.mean(runs, (weights / weights.sum()).astype(np.float32))
+        better = plan + self._noise.mean(runs, (weights / weights.sum()).astype(np.float32))
+        bounds = world.bounds  # what is asked beyond them does nothing, and would have to be taken back first
+        better[0] = better[0].clip(bounds.lowest, bounds.highest)
+        better[1] = better[1].clip(-bounds.turn_rate, bounds.turn_rate)
+        return better
 
     def _world(self, place: Place, motion: MotionState, limits: MotionLimits) -> World:
         options = self._options
