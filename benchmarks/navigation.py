@@ -291,7 +291,7 @@ def widest_passages(grid: OccupancyGrid, pairs: list[tuple[Cell, Cell]]) -> dict
 def peer_row(name: str, figures: dict[str, Any]) -> str:
     """One line of the table of peers."""
     if "missing" in figures:
-        return f"| {name} | not installed: `{figures['missing']}` ||||||||"
+        return f"| {name} | not installed: `{figures['missing']}` ||||||||||"
     ratios = [
         f"{figures[taste]['length_ratio']:.2f} (≤ {figures[taste]['longest_ratio']:.2f}) | "
         f"{figures[taste]['clearance_ratio']:.2f}"
