@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["RECORDING", "missions_folder", "sync", "sync_files", "whole_file", "write_whole"]
+__all__ = ["RECORDING", "WholeFile", "missions_folder", "sync", "sync_files", "whole_file", "write_whole"]
 
 RECORDING = "recording.mcap"
 """What a run calls its recording."""
@@ -36,25 +36,47 @@ def sync_files(folder: Path) -> None:
             sync(path)
 
 
+class WholeFile:
+    """A file that no reader, and no crash, ever meets half of.
+
+    Attributes:
+        draft: where to write: beside ``path``, with its suffix.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Begin.
+
+        Raises:
+            OSError: the folder cannot be written.
+        """
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+        os.close(handle)
+        self._path, self.draft = path, Path(name)
+
+    def keep(self) -> None:
+        """The draft is finished: it takes the name."""
+        sync(self.draft)
+        self.draft.chmod(0o644)
+        self.draft.replace(self._path)
+
+    def drop(self) -> None:
+        """Leave nothing behind. Idempotent."""
+        self.draft.unlink(missing_ok=True)
+
+
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A file to write to that takes the name ``path`` when the block ends, and is gone if it breaks off.
-
-    No reader, and no crash, ever meets half of it. It has the suffix of ``path``.
+    """A ``WholeFile``'s draft: kept when the block ends, dropped if it breaks off.
 
     Raises:
         OSError: the folder cannot be written.
     """
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
+    file = WholeFile(path)
     try:
-        yield temporary
-        sync(temporary)
-        temporary.chmod(0o644)
-        temporary.replace(path)
+        yield file.draft
+        file.keep()
     except BaseException:
-        temporary.unlink(missing_ok=True)
+        file.drop()
         raise
 
 

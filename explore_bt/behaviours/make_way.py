@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from explore_bt.behaviours.mates import course_of, mate_in_the_way, needed_apart_m
+from explore_bt.behaviours.mates import course_of, goes_before, mate_in_the_way, needed_apart_m
 from explore_bt.behaviours.people import someone_is_in_the_way, who_is_near
 from explore_bt.errors import ComponentFailure, PlanningFailure
 from explore_bt.exploration import find_refuge, find_sidestep, gap_to_courses_m
@@ -23,14 +23,17 @@ _SAME_M = 0.3
 _HERE_M = 0.1
 _MATE_CHANCES = 4
 _INSIST_S, _ASK_S = 30.0, 2.0
+_PARKED_S = 4.0
+"""A mate that has stood so long without a path is not waited for: it has arrived, or waits for this robot.
+The one that goes first waits half as long, or both would go on at once."""
 
 
 class MakeWay(Leaf):
     """Drives to a near place beside the courses of those who come, a side branch of a corridor, and waits.
 
     Where no place is better than the one it stands on it waits there. For a team mate, whose path is known,
-    that is a place off that path, up to ``for_mates`` away, until it has passed; where there is none the
-    robot asks for the way itself.
+    that is a place off that path, up to ``for_mates`` away, until it has passed or wants nothing any more;
+    where there is none the robot asks for the way itself.
     SUCCESS as soon as nobody is near or comes nearer, or after ``patience``. FAILURE if nobody was in the
     way, or the same goal has been stood aside from ``chances`` times: it may be the building after all.
     """
@@ -57,6 +60,7 @@ class MakeWay(Leaf):
         """Look for a place."""
         self._mate = mate_in_the_way(self.robot)
         self._held_at = self.robot.estimate().T_map_base.xy
+        self._parked_since_s: float | None = None
         patience_s = self.patience if self._mate is None else self.mate_patience
         self._until_s = self.robot.now_s() + patience_s
         self._makes_way = self._is_needed()
@@ -107,16 +111,7 @@ class MakeWay(Leaf):
         if place is None:
             self.say("waiting here: no place is farther out of the way")
             return False
-        here = robot.estimate().T_map_base
-        yaw = math.atan2(place[1] - here.y, place[0] - here.x)
-        try:
-            path = robot.plan(Pose2(*place, yaw))
-        except (PlanningFailure, ComponentFailure) as refusal:
-            self.say(f"waiting here: no way aside, {refusal}")
-            return False
-        robot.pilot.follow(path)
-        self.say(f"{path.length_m:.1f} m aside, to ({place[0]:.1f}, {place[1]:.1f})")
-        return True
+        return self._drive_off(place, "aside")
 
     def _leave_course(self, mate: Mate) -> bool:
         """Drive off its path; where no place is, ask for the way."""
@@ -135,14 +130,19 @@ class MakeWay(Leaf):
         if math.dist(place, here.xy) < _HERE_M:
             self.say(f"off {mate.name}'s way already")
             return False
+        return self._drive_off(place, f"off {mate.name}'s way")
+
+    def _drive_off(self, place: tuple[float, float], where: str) -> bool:
+        """Whether there is a way to that place: the robot is on it then."""
+        here = self.robot.estimate().T_map_base
         yaw = math.atan2(place[1] - here.y, place[0] - here.x)
         try:
-            path = robot.plan(Pose2(*place, yaw))
+            path = self.robot.plan(Pose2(*place, yaw))
         except (PlanningFailure, ComponentFailure) as refusal:
             self.say(f"waiting here: no way aside, {refusal}")
             return False
-        robot.pilot.follow(path)
-        self.say(f"{path.length_m:.1f} m off {mate.name}'s way, to ({place[0]:.1f}, {place[1]:.1f})")
+        self.robot.pilot.follow(path)
+        self.say(f"{path.length_m:.1f} m {where}, to ({place[0]:.1f}, {place[1]:.1f})")
         return True
 
     def _has_passed(self, before: Mate) -> bool:
@@ -150,8 +150,20 @@ class MakeWay(Leaf):
         mate = next((each for each in self.robot.team.mates if each.name == before.name), None)
         if mate is None:
             return True
+        if self._is_parked(mate):
+            return True
         off_m = np.hypot(*(course_of(mate) - self._held_at).T).min()
         return bool(off_m > needed_apart_m(self.robot, mate) + _APART_M)
+
+    def _is_parked(self, mate: Mate) -> bool:
+        """Whether it has had nowhere to go for long."""
+        now_s = self.robot.now_s()
+        if not mate.is_parked:
+            self._parked_since_s = None
+            return False
+        if self._parked_since_s is None:
+            self._parked_since_s = now_s
+        return now_s - self._parked_since_s > _PARKED_S * (1.0 if goes_before(self.robot, mate) else 0.5)
 
     def _has_come(self) -> bool:
         """There, or held on the way."""

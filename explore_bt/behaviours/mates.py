@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +10,6 @@ from explore_bt.types import Mate
 
 __all__ = ["course_of", "goes_before", "mate_in_the_way", "needed_apart_m"]
 
-_CLOSE_M = 0.5
 _SPARE_M = 0.15
 
 
@@ -22,14 +19,10 @@ def goes_before(robot: RobotServices, mate: Mate) -> bool:
 
 
 def mate_in_the_way(robot: RobotServices) -> Mate | None:
-    """The team mate that the robot is being held for, or that stands so near that it may be."""
-    here = robot.estimate().T_map_base.xy
-    for mate in robot.team.mates:
-        is_held_for = robot.pilot.held_by is HeldBy.MATE and robot.pilot.in_the_way == mate.name
-        gap_m = math.dist(here, mate.T_map_base.xy) - robot.footprint_radius_m - mate.radius_m
-        if is_held_for or (robot.pilot.held_by is HeldBy.OBSTACLE and gap_m < _CLOSE_M):
-            return mate
-    return None
+    """The team mate that the robot is being held for."""
+    if robot.pilot.held_by is not HeldBy.MATE:
+        return None
+    return next((mate for mate in robot.team.mates if mate.name == robot.pilot.in_the_way), None)
 
 
 def course_of(mate: Mate) -> NDArray[np.float64]:

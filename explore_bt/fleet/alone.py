@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from explore_bt.fleet.team_map import TeamMap
@@ -28,6 +28,8 @@ class Alone:
     """Has nobody to tell anything to; the null object of ``TeamLink``, and ``TeamServices`` for tests."""
 
     yields = 0
+    lag_s = 0.0
+    is_paused = False
 
     def __init__(self, name: str = "robot", allocator: Allocator | None = None) -> None:
         self.name = name
@@ -47,7 +49,7 @@ class Alone:
     def receive(self, now_s: float) -> None:
         """Nobody speaks."""
 
-    def send(self, presence: object, grid: OccupancyGrid) -> None:
+    def send(self, now_s: float, presence: object, grid: OccupancyGrid) -> None:
         """Nobody listens."""
 
     def claim(self, places: Sequence[tuple[float, float]]) -> None:
@@ -60,6 +62,13 @@ class Alone:
 
     def insist(self, until_s: float) -> None:
         """Nobody is in the way."""
+
+    def memory(self) -> Mapping[str, object]:
+        """Nothing was told."""
+        return {}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Nobody has to be told again."""
 
     def sum_up(self) -> None:
         """Nothing was told."""

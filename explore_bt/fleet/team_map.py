@@ -79,7 +79,7 @@ class TeamMap:
             return None
         joined = GridWindow(0, 0, 0, 0)
         for window in later:
-            joined = window if joined.is_empty else joined.joined(window)
+            joined = joined.joined(window)
         return joined
 
     def _fits(self, own: OccupancyGrid) -> bool:
@@ -125,11 +125,8 @@ class TeamMap:
             is_same = own.origin_xy == self._own.origin_xy and own.shape == self._own.shape
             known = changed if is_same else None
             window = whole if known is None else known.moved(whole.row0, whole.col0)
-            if known is not None and known.is_empty:
-                window = GridWindow(0, 0, 0, 0)
         for place in self._stale:
-            drawn = self._draw_tile(place)
-            window = drawn if window.is_empty else window.joined(drawn)
+            window = window.joined(self._draw_tile(place))
         self._stale.clear()
         self._finish(own, window)
 

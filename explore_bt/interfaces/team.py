@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import ClassVar
 
+from explore_bt.errors import PluginError
 from explore_bt.interfaces.plugin import Plugin, RobotContext
 
 __all__ = ["Letter", "Team"]
@@ -54,6 +56,10 @@ class Team(Plugin):
     def say(self, topic: str, payload: bytes) -> None:
         """Replace what this robot says on a topic. Never blocks, never raises for want of a network."""
 
+    def say_often(self, topic: str, payload: bytes) -> None:
+        """As ``say``, of what is said anew all the time: one such word that is lost is not missed."""
+        self.say(topic, payload)
+
     @abstractmethod
     def hear(self) -> Sequence[Letter]:
         """News since the last call: of each robot's topics at least the newest, in order. Never blocks."""
@@ -65,3 +71,15 @@ class Team(Plugin):
     def figures(self) -> Mapping[str, float]:
         """Numbers for the report; none unless overridden."""
         return {}
+
+    @classmethod
+    def router(cls, listen: Sequence[str]) -> AbstractContextManager[None]:  # noqa: ARG003  # for those that have one
+        """While inside, this process passes on what robots say that do not reach one another.
+
+        Args:
+            listen: where they come to, as the plugin writes endpoints.
+
+        Raises:
+            PluginError: its robots need nobody between them, or an endpoint cannot be had.
+        """
+        raise PluginError(f"team {cls.name} has no router: its robots reach one another without")

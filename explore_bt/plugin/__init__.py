@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from explore_bt.plugin.spec import hookimpl
 
 if TYPE_CHECKING:
+    from explore_bt.plugin.extras import require
     from explore_bt.plugin.inline import INLINE_FILE
     from explore_bt.plugin.manager import Host, load_plugins
     from explore_bt.plugin.registry import KINDS, BrokenPlugin, Entry, Registry
@@ -25,9 +26,11 @@ __all__ = [
     "Registry",
     "hookimpl",
     "load_plugins",
+    "require",
 ]
 
 _HOME = {
+    "require": "extras",
     "INLINE_FILE": "inline",
     "Host": "manager",
     "load_plugins": "manager",

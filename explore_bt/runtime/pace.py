@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from explore_bt.clock import WallClock
+from explore_bt.mission import Mission
 from explore_bt.runtime.attendant import Attendant
 
 if TYPE_CHECKING:
     from explore_bt.runtime.runner import Runner
 
-__all__ = ["Pace"]
+__all__ = ["Pace", "pace_of"]
 
 
 class Pace(Attendant):
@@ -31,7 +32,16 @@ class Pace(Attendant):
         self._runner, self._begin_s = runner, runner.now_s
         self._clock = WallClock()
 
+    def on_hold(self) -> None:
+        """Also while it is paused: its team is told so all the time."""
+        self.on_period()
+
     def on_period(self) -> None:
         """Let the others come up."""
         if self._runner is not None and self._runner.is_simulated:
             self._clock.wait_until((self._runner.now_s - self._begin_s) / self._rate)
+
+
+def pace_of(mission: Mission) -> Attendant:
+    """Who holds a robot in a process of its own to real time; robots of one process need nobody."""
+    return Attendant() if mission.solo is None else Pace(mission.solo.pace)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
 from explore_bt.exploration import warm_up
-from explore_bt.fleet import Presence, TeamMap
+from explore_bt.fleet import TeamMap
 from explore_bt.interfaces import Commons, Event, MapMemory, MapView, RobotContext, RobotSnapshot
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
@@ -26,7 +26,7 @@ from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.team_mate import first_path, grids_to_try, standing
-from explore_bt.runtime.team_place import team_place
+from explore_bt.runtime.team_place import give_word, presence_of, team_place
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.runtime.upright import Upright
@@ -142,6 +142,7 @@ class Robot:
             "scores": self.scores,
             "purse": self._purse,
             "tight places": self._tight,
+            "team": self.team,
         }
         self._keeping = RobotKeeping(self.tree, self.blackboard, parts)
         if cut is not None:
@@ -281,7 +282,7 @@ class Robot:
         self._held_s += dt_s
         self._keep_score(now_s, dt_s)
         self._hear_team()
-        self._tell_team(now_s, dt_s)
+        self._tell_team(now_s, dt_s, is_paused=True)
 
     def watch_ticks(self, probe: Probe) -> None:
         """Have ``probe`` asked before and after every tick of every node of the tree."""
@@ -357,6 +358,8 @@ class Robot:
             moving=self.moving,
             budgets=self.budgets(),
             charge=self._purse.charge,
+            doing=self.team.doing,
+            claims=self.team.claims,
         )
 
     def tell(self, level: str, source: str, message: str) -> None:
@@ -383,13 +386,11 @@ class Robot:
         self.team.receive(self._clock_s())
         self.pilot.mates = self._senses.mates = self.team.near
 
-    def _tell_team(self, now_s: float, dt_s: float) -> None:
-        here = self.pilot.predict(self.estimate(), now_s).T_map_base
-        stop, ahead = self.pilot.stop_places(here, dt_s), self.pilot.places_ahead(here)
-        speed_mps = self._limits.speed_mps
-        twist, radius_m = self.pilot.motion.twist, self.footprint_radius_m
-        presence = Presence(now_s, now_s + dt_s, here, twist, radius_m, speed_mps, stop, ahead)
-        self.team.send(presence, self.slam.grid())
+    def _tell_team(self, now_s: float, dt_s: float, *, is_paused: bool = False) -> None:
+        self.team.is_paused = is_paused
+        give_word(self.pilot, self.team, now_s)
+        about = (self.footprint_radius_m, self._limits.speed_mps, now_s, dt_s)
+        self.team.send(now_s, lambda: presence_of(self.pilot, self.estimate(), *about), self.slam.grid())
 
     def _read(self) -> Sequence[Measurement]:
         try:

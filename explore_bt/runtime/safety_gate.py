@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,6 +64,8 @@ BODY_M = 0.25
 """Radius of who may stand unseen behind a corner."""
 CAUTIOUS_MPS = 0.14
 """So slow the robot goes on, though someone might step out: else it would never pass a door."""
+MATE_OFF_M = 0.25
+"""Returns so near to a team mate's disc may be its own: of an old word, of what it carries."""
 BESIDE_M = 0.15
 """Returns so near to what was seen of a moving thing are its own."""
 _ROUNDING = 1e-6
@@ -90,7 +93,8 @@ class SafetyGate:
 
     Attributes:
         mates: those of its team whose word is fresh.
-        in_the_way: the name of the one that it was last held for.
+        in_the_way: the name of the one that it was last held for; empty while it keeps its own word.
+        stays_until_s: the team has been told that the robot stays where it is until then.
     """
 
     def __init__(self, footprint_radius_m: float, limits: MotionLimits, delay_s: float = 0.0) -> None:
@@ -103,6 +107,7 @@ class SafetyGate:
         """
         self.mates: tuple[Mate, ...] = ()
         self.in_the_way = ""
+        self.stays_until_s = -math.inf
         self._radius_m = footprint_radius_m
         self._delay_s = delay_s
         self._limits = limits
@@ -162,12 +167,16 @@ class SafetyGate:
         following = _state_after(self._let_go_of_brake(wanted, motion, dt_s), motion, dt_s)
         before = following if in_force_s > dt_s else motion
         way = way_to_rest(following, pose, before, self._limits, max(in_force_s, dt_s))
-        held_by, fault = HeldBy.OBSTACLE, self._fault_on_the_way(way, following)
+        fault, whom = self._fault_on_the_way(way, following)
+        held_by = HeldBy.MATE if whom else HeldBy.OBSTACLE
         if not fault:
             held_by, fault = HeldBy.SOMEONE, self._fault_by_people(way, now_s)
-        if not fault and np.any(way.poses[:, :2] - way.poses[0, :2]):
+        moves_off = bool(np.any(way.poses[:, :2] - way.poses[0, :2]))
+        if not fault and moves_off:
             held_by, (fault, whom) = HeldBy.MATE, fault_by_mates(way.poses, self._radius_m, self.mates, now_s)
-            self.in_the_way = whom or self.in_the_way
+        self.in_the_way = whom or self.in_the_way
+        if not fault and moves_off and now_s < self.stays_until_s:
+            held_by, fault, self.in_the_way = HeldBy.MATE, "the team has been told that it stays here", ""
         if fault:
             return GateDecision(self._next_of_brake(motion, dt_s), fault, held_by)
         self._brake = _Brake(following)
@@ -198,14 +207,15 @@ class SafetyGate:
         linear, angular = brake_velocities(brake.start, self._limits, times)
         return _state_after(Twist2(float(linear[0]), float(angular[0])), motion, dt_s)
 
-    def _fault_on_the_way(self, way: WayToRest, following: MotionState) -> str:
+    def _fault_on_the_way(self, way: WayToRest, following: MotionState) -> tuple[str, str]:
+        """What is too near to the way, and which team mate that is; empty where it is none."""
         ahead = way.poses
         if not np.any(ahead[:, :2] - ahead[0, :2]):
-            return ""  # a disc turning on the spot touches nothing that it does not touch already
+            return "", ""  # a disc turning on the spot touches nothing that it does not touch already
         on_grid = self._window.clearance_m(ahead[:, :2], between_cells=self._map_margin_m > 0.0)
         needed_m = self._radius_m + self._map_margin_m
         in_map = _shortfall(on_grid, needed_m, "obstacle or unknown space in the map")
-        return in_map or self._fault_in_scans(ahead, following)
+        return (in_map, "") if in_map else self._fault_in_scans(ahead, following)
 
     def _fault_by_people(self, way: WayToRest, now_s: float) -> str:
         if self._around is None:
@@ -251,25 +261,21 @@ class SafetyGate:
             return ""
         return "someone may step out before the robot is slow"
 
-    def _fault_in_scans(self, ahead: NDArray[np.float64], following: MotionState) -> str:
-        if not self._scans:
-            return ""
+    def _fault_in_scans(self, ahead: NDArray[np.float64], following: MotionState) -> tuple[str, str]:
         if self._is_held:
             ahead = np.vstack([ahead, _onward(ahead[-1], following.twist, RESTART_WAY_M)])
-        fault = self._shortfall_in_scans(ahead[:, :2], abs(following.twist.linear_mps))
+        speed_mps = abs(following.twist.linear_mps)
+        fault = _shortfall_in_scans(ahead[:, :2], self._scans, self._radius_m, speed_mps)
         self._is_held = bool(fault)
-        return fault
+        return fault, self._mate_in_scans(ahead[:, :2], speed_mps) if fault else ""
 
-    def _shortfall_in_scans(self, ahead: NDArray[np.float64], speed_mps: float) -> str:
-        by_scan = np.stack([_nearest_point_m(ahead, points) for points in reversed(self._scans)])
-        needed_m = self._radius_m + _haste(speed_mps) * HASTE_MARGIN_M
-        # a way out must win clearance: were "no closer" enough, noise would let the robot creep closer
-        gain_m = ESCAPE_SLOPE * float(np.hypot(*(ahead[-1] - ahead[0])))
-        for count, margin_m in reversed(VOTES):
-            room_m = np.median(by_scan[:count], axis=0)
-            obstacle = f"obstacle in the last {count} scans" if count > 1 else "obstacle in the newest scan"
-            if fault := _shortfall(room_m, needed_m + margin_m, obstacle, gain_m if count > 1 else 0.0):
-                return fault
+    def _mate_in_scans(self, ahead: NDArray[np.float64], speed_mps: float) -> str:
+        """The team mate whose returns alone are too near: its word is not exact enough to cut all of them."""
+        for mate in self.mates:
+            reach_m = mate.radius_m + MATE_OFF_M
+            scans = [points[np.hypot(*(points - mate.T_map_base.xy).T) > reach_m] for points in self._scans]
+            if not _shortfall_in_scans(ahead, scans, self._radius_m, speed_mps):
+                return mate.name
         return ""
 
 
@@ -295,6 +301,24 @@ def _walking_from_hidden(around: Surroundings, near: Pose2) -> WalkingDistance |
     if not len(around.hidden):
         return None
     return WalkingDistance(around.grid, near, around.hidden, np.full(len(around.hidden), BODY_M))
+
+
+def _shortfall_in_scans(
+    ahead: NDArray[np.float64], scans: Sequence[NDArray[np.float64]], radius_m: float, speed_mps: float
+) -> str:
+    """Why (N, 2) places must not be passed at that speed; scans: (K, 2) points each, the newest last."""
+    if not scans:
+        return ""
+    by_scan = np.stack([_nearest_point_m(ahead, points) for points in reversed(scans)])
+    needed_m = radius_m + _haste(speed_mps) * HASTE_MARGIN_M
+    # a way out must win clearance: were "no closer" enough, noise would let the robot creep closer
+    gain_m = ESCAPE_SLOPE * float(np.hypot(*(ahead[-1] - ahead[0])))
+    for count, margin_m in reversed(VOTES):
+        room_m = np.median(by_scan[:count], axis=0)
+        obstacle = f"obstacle in the last {count} scans" if count > 1 else "obstacle in the newest scan"
+        if fault := _shortfall(room_m, needed_m + margin_m, obstacle, gain_m if count > 1 else 0.0):
+            return fault
+    return ""
 
 
 def _shortfall(clearance_m: NDArray[np.float64], needed_m: float, obstacle: str, gain_m: float = 0.0) -> str:

@@ -16,6 +16,8 @@ __all__ = ["fault_by_mates", "first_path", "grids_to_try", "standing", "with_mat
 
 _OFF_M = 0.15
 """A return so near to a mate's disc is its own: poses, a sweep's motion and noise are off by less."""
+_SURE_S = 0.5
+"""Where a mate is by an older word nobody knows so well: its returns stay in the scan, as a stranger's."""
 _MARGIN_M = 0.05
 _GROWTH = 2.0
 """How fast the place where a mate may stop grows when its word is old, in its speed limit: it drives on, and
@@ -24,6 +26,9 @@ _FAR_M = 4.0
 _ROOM_M = _MARGIN_M + 0.03
 """A plan passes a mate so far off that the gate will not mind, cells and all."""
 _SLACK_M = 1e-3
+_OFF_SHARE = 0.1
+"""A way leads off if it gains so much of its length in room: the first that a robot at rest can drive is no
+tenth of a millimetre."""
 
 
 def fault_by_mates(
@@ -41,6 +46,7 @@ def fault_by_mates(
         mates: who was heard of lately.
         now_s: on the clock of their stamps.
     """
+    gain_m = min(_SLACK_M, _OFF_SHARE * float(np.hypot(*np.diff(way[:, :2], axis=0).T).sum()))
     for mate in mates:
         late_s = max(now_s - mate.binding_s, 0.0)
         needed_m = radius_m + mate.radius_m + _MARGIN_M + _GROWTH * mate.speed_limit_mps * late_s
@@ -51,7 +57,7 @@ def fault_by_mates(
         worst_m = float(room_m.min())
         if worst_m >= needed_m:
             continue
-        if worst_m < min(needed_m, room_m[0]) - _SLACK_M or room_m[-1] < room_m[0] + _SLACK_M:
+        if worst_m < min(needed_m, room_m[0]) - _SLACK_M or room_m[-1] < room_m[0] + gain_m:
             return f"team mate {mate.name} stops {worst_m - radius_m - mate.radius_m:.2f} m away", mate.name
     return "", ""
 
@@ -62,8 +68,9 @@ def without_mates(scan: Scan2D, pose: Pose2, mates: Sequence[Mate]) -> Scan2D:
     Args:
         scan: as measured.
         pose: of the robot at its stamp, ``map`` frame.
-        mates: whose word is fresh.
+        mates: who was heard of lately.
     """
+    mates = [mate for mate in mates if scan.stamp_s - mate.stamp_s < _SURE_S]
     if not mates:
         return scan
     bearings = scan.angles_rad + pose.yaw_rad
@@ -129,14 +136,9 @@ def with_mates(grid: OccupancyGrid, mates: Sequence[Mate], here: Pose2, radius_m
         x, y = mate.T_map_base.xy
         gap_m = np.hypot(here.x - x, here.y - y) - radius_m - grid.resolution_m
         reach_m = min(mate.radius_m + _ROOM_M, gap_m)
-        row, col = grid.cell_of(x, y)
-        n = int(np.ceil((mate.radius_m + _ROOM_M) / grid.resolution_m)) + 1
-        rows = slice(max(row - n, 0), max(row + n + 1, 0))
-        cols = slice(max(col - n, 0), max(col + n + 1, 0))
-        window = cells[rows, cols]
-        if not window.size:
-            continue
-        local = np.argwhere(np.ones(window.shape, dtype=np.bool_))
-        off_m = grid.centers_of(local + np.array([rows.start, cols.start])) - (x, y)
-        window[np.hypot(off_m[:, 0], off_m[:, 1]).reshape(window.shape) <= reach_m] = OCCUPIED
+        window = grid.window_around(x, y, mate.radius_m + _ROOM_M + grid.resolution_m)
+        part = cells[window.slices]
+        local = np.argwhere(np.ones(part.shape, dtype=np.bool_))
+        off_m = grid.centers_of(local + np.array([window.row0, window.col0])) - (x, y)
+        part[np.hypot(off_m[:, 0], off_m[:, 1]).reshape(part.shape) <= reach_m] = OCCUPIED
     return replace(grid, cells=cells)

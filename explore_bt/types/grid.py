@@ -44,7 +44,9 @@ class GridWindow:
         )
 
     def joined(self, other: GridWindow) -> GridWindow:
-        """The smallest window that holds both."""
+        """The smallest window that holds all cells of both."""
+        if self.is_empty or other.is_empty:
+            return other if self.is_empty else self
         return GridWindow(
             min(self.row0, other.row0),
             min(self.col0, other.col0),

@@ -3,10 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol, Self
 
 from explore_bt.types.pose import Twist2
 
 __all__ = ["MotionLimits", "MotionState"]
+
+
+class _Figures(Protocol):
+    """The limits as a driver's options name them, in the same units."""
+
+    speed: float
+    acceleration: float
+    jerk: float
+    turn_rate: float
+    turn_acceleration: float
+    turn_jerk: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +31,18 @@ class MotionLimits:
     turn_rate_rps: float = 1.2
     turn_acceleration_rps2: float = 2.0
     turn_jerk_rps3: float = 8.0
+
+    @classmethod
+    def of(cls, options: _Figures) -> Self:
+        """The limits that a driver's options name."""
+        return cls(
+            options.speed,
+            options.acceleration,
+            options.jerk,
+            options.turn_rate,
+            options.turn_acceleration,
+            options.turn_jerk,
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,16 +16,9 @@ from explore_bt.plugin import Registry, load_plugins
 from explore_bt.recording import McapRecorder
 from explore_bt.runtime import Attendant, StopFlag, run_mission
 from explore_bt.types import Result
+from tests.groot.box import WORLD
 
 PATIENCE_S = 120.0
-
-WORLD = """
-format: explore-bt-world/1
-name: box
-start: [1.0, 1.0, 0 deg]
-rooms:
-  - {name: room, box: [0.0, 0.0, 6.0, 3.0]}
-"""
 
 HEAD = """
 format: explore-bt/1

@@ -146,19 +146,44 @@ def test_a_table_top_counts_as_a_contact_where_the_mast_meets_it(tmp_path: Path)
     assert driver.truth().pose().x == pytest.approx(2.95, abs=0.15)
 
 
+RIDGE = (
+    "format: explore-bt-world/1\nrooms: [{name: a, box: [0, 0, 4, 3]}, {name: b, box: [4, 0, 9, 3]}]\n"
+    "doors: [{name: door, at: [4, 1.5], width: 1 m, sill: 2 cm}]\n"
+    "ramps: [{name: ramp, box: [5, 0.5, 8, 2.5], slope: 3 deg, level: 20 cm}]\n"
+)
+
+
 def test_sills_and_ramps_are_driven_over_and_are_no_contacts(tmp_path: Path) -> None:
     world = tmp_path / "steps.yaml"
-    world.write_text(
-        "format: explore-bt-world/1\n"
-        "rooms: [{name: a, box: [0, 0, 4, 3]}, {name: b, box: [4, 0, 9, 3]}]\n"
-        "doors: [{name: door, at: [4, 1.5], width: 1 m, sill: 2 cm}]\n"
-        "ramps: [{name: ramp, box: [5, 0.5, 8, 2.5], slope: 3 deg, level: 20 cm}]\n"
-    )
+    world.write_text(RIDGE)
     driver = ready(world, RobotContext(start=Pose2(3.0, 1.5, 0.0)), columns=90)
     drive(driver, Twist2(0.4, 0.0), 13.0)
     assert driver.fault is None
     assert driver.truth().pose().x > 7.5
     assert driver.truth().contacts() == 0
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        pytest.param(Pose2(4.0, 1.5, 0.0), id="on the sill"),
+        pytest.param(Pose2(4.05, 1.5, 1.4), id="one wheel on the sill"),
+        pytest.param(Pose2(5.6, 1.5, 0.0), id="up the ramp"),
+        pytest.param(Pose2(5.6, 1.5, 1.57), id="along the slope"),
+        pytest.param(Pose2(7.9, 1.5, 2.5), id="at its foot"),
+    ],
+)
+def test_a_robot_begins_with_its_wheels_on_what_is_under_them(start: Pose2, tmp_path: Path) -> None:
+    world = tmp_path / "ridge.yaml"
+    world.write_text(RIDGE)
+    driver = ready(world, RobotContext(start=start), columns=90)
+    wheels = driver._running().data.contact
+    assert len(wheels) >= 2
+    assert float(wheels.dist.min()) > -1e-3
+    drive(driver, Twist2(), 3.0)
+    assert driver.fault is None
+    assert driver.truth().contacts() == 0
+    assert driver.truth().pose().distance_to(start) < 0.15
 
 
 def test_who_walks_into_a_standing_robot_is_not_its_contact(tmp_path: Path) -> None:

@@ -49,7 +49,7 @@ class Maps:
         joined = GridWindow(0, 0, 0, 0)
         for window in later:
             assert window is not None
-            joined = window if joined.is_empty else joined.joined(window)
+            joined = joined.joined(window)
         return joined
 
 

@@ -65,6 +65,12 @@ def test_joined_windows_hold_both_and_no_row_or_column_more(one: GridWindow, oth
         assert np.flatnonzero(joined.any(axis=axis)).tolist() == list(range(edges[0], edges[-1] + 1))
 
 
+@given(windows)
+def test_joined_with_nothing_a_window_stays_as_it_is(window: GridWindow) -> None:
+    nothing = GridWindow(0, 0, 0, 0)
+    assert window.joined(nothing) == nothing.joined(window) == window
+
+
 @given(windows, st.integers(0, 5), st.integers(0, 5))
 def test_a_moved_window_marks_the_cells_moved(window: GridWindow, rows: int, cols: int) -> None:
     expected = np.zeros((30, 30), dtype=np.uint8)

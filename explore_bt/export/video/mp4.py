@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -13,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.errors import UserError
+from explore_bt.files import WholeFile
 
 __all__ = ["Mp4Writer"]
 
@@ -37,11 +36,8 @@ class Mp4Writer:
             UserError: this build of OpenCV cannot write such files.
             OSError: the folder cannot be written.
         """
-        self._path = path
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=".mp4", dir=path.parent)
-        os.close(handle)
-        self._temporary = Path(name)
-        self._writer = cv2.VideoWriter(name, cv2.VideoWriter.fourcc(*_CODEC), rate_hz, size)
+        self._file = WholeFile(path)
+        self._writer = cv2.VideoWriter(str(self._file.draft), cv2.VideoWriter.fourcc(*_CODEC), rate_hz, size)
         if not self._writer.isOpened():
             self.drop()
             raise UserError(
@@ -56,13 +52,12 @@ class Mp4Writer:
     def keep(self) -> None:
         """The film is over: put the file in its place."""
         self._writer.release()
-        self._temporary.chmod(0o644)
-        os.replace(self._temporary, self._path)
+        self._file.keep()
 
     def drop(self) -> None:
         """Leave no file. Idempotent."""
         self._writer.release()
-        self._temporary.unlink(missing_ok=True)
+        self._file.drop()
 
     def __enter__(self) -> Self:
         return self

@@ -99,11 +99,11 @@ class GridHistory:
         later = [window for number, window in self._windows if number > revision]
         if revision > self.grid.revision or len(later) != self.grid.revision - revision:
             return None
-        whole: GridWindow | None = None
+        whole = GridWindow(0, 0, 0, 0)
         for window in later:
             if window is None:
                 return None
-            whole = window if whole is None else whole.joined(window)
+            whole = whole.joined(window)
         return whole
 
 

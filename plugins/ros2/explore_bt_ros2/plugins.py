@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from explore_bt import hookimpl
-from explore_bt_ros2.extra import require
+from explore_bt.plugin import require
 
-require("rclpy")
+_OTHERWISE = ", or source /opt/ros/jazzy/setup.bash before"
+require("rclpy", "ros2", otherwise=_OTHERWISE)
 
 __all__ = ["explore_bt_register"]
 
@@ -15,7 +16,7 @@ __all__ = ["explore_bt_register"]
 @hookimpl
 def explore_bt_register() -> Sequence[type]:
     """Driver, SLAM, controller and bridge."""
-    require("rclpy")
+    require("rclpy", "ros2", otherwise=_OTHERWISE)
     from explore_bt_ros2.driver import Ros2
     from explore_bt_ros2.nav2 import Nav2
     from explore_bt_ros2.neighbour_map import Ros2Map

@@ -11,6 +11,7 @@ from pydantic import Field
 from explore_bt import hookimpl
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import API_VERSION, Event, PluginOptions, RunInfo, Sink, TickSnapshot
+from explore_bt.plugin import require
 from explore_bt.recording import (
     ROBOT_TOPICS,
     RUN_TOPICS,
@@ -24,7 +25,6 @@ from explore_bt.recording import (
     stamp_ns,
 )
 from explore_bt.types import Result
-from explore_bt_sinks.extra import require
 
 if TYPE_CHECKING:
     import foxglove

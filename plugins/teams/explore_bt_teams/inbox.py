@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from explore_bt.interfaces import Letter
@@ -44,8 +44,11 @@ class Inbox:
         self._senders: dict[str, _Sender] = {}
         self._fresh: dict[tuple[str, str], Letter] = {}
 
-    def put(self, letter: Letter, life: int, number: int) -> None:
-        """A word has come: the ``number``-th of that life of its speaker."""
+    def put(self, letter: Letter, life: int, number: int, *, is_counted: bool = True) -> None:
+        """A word has come: the ``number``-th of that life of its speaker.
+
+        Those that are not counted have numbers of their own, and nobody is asked for them.
+        """
         with self._lock:
             sender = self._senders.get(letter.sender)
             if sender is None or life > sender.life:
@@ -53,7 +56,7 @@ class Inbox:
             if life < sender.life:
                 return
             self._came += 1
-            if number > sender.whole and len(sender.later) < _MOST_KEPT:
+            if is_counted and number > sender.whole and len(sender.later) < _MOST_KEPT:
                 sender.later.add(number)
                 _advance(sender)
             if number > sender.newest.get(letter.topic, 0):
@@ -62,11 +65,20 @@ class Inbox:
                 self._fresh.pop(key, None)  # to the end
                 self._fresh[key] = letter
 
-    def answered(self, name: str, life: int, number: int) -> None:
-        """A robot that was asked has told the newest of all its topics, up to its ``number``-th word."""
+    def answered(self, name: str, life: int, number: int, told: Collection[int]) -> None:
+        """A robot that was asked has told the newest of all its topics, up to its ``number``-th word.
+
+        Args:
+            name: the robot's.
+            life: of the robot.
+            number: of its newest word then.
+            told: numbers of the words that it answered with; some may have been lost.
+        """
         with self._lock:
             sender = self._senders.get(name)
             if sender is None or sender.life != life or number <= sender.whole:
+                return
+            if any(each > sender.whole and each not in sender.later for each in told):
                 return
             sender.whole = number
             sender.later = {later for later in sender.later if later > number}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from explore_bt import hookimpl
-from explore_bt_drivers.extra import require
+from explore_bt.plugin import require
 
 require("mujoco", "mujoco")
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from explore_bt.clock import Clock
-from explore_bt.interfaces import API_VERSION, Driver, Filming, GroundTruth, PluginOptions, RobotContext
-from explore_bt.types import BodyFault, BodyShape, Measurement, MotionLimits, Pose2, Twist2
+from explore_bt.interfaces import API_VERSION, Filming, PluginOptions, RobotContext
+from explore_bt.types import BodyFault, BodyShape, MotionLimits, Twist2
 from explore_bt_drivers.mujoco.figures import BODY_HEIGHT_M, FORESIGHT_S, STEP_M
 from explore_bt_drivers.mujoco.options import MujocoOptions
 from explore_bt_drivers.people import Town
+from explore_bt_drivers.simulated import SimulatedDriver
 from explore_bt_drivers.world import choose_start, load_world, observable_floor, stand_of
 
 if TYPE_CHECKING:  # the physics is imported in ``setup``: missions are checked without it
-    from explore_bt_drivers.mujoco.simulation import Simulation
-    from explore_bt_drivers.mujoco.truth import MujocoTruth
+    from explore_bt_drivers.mujoco.simulation import Simulation  # noqa: F401  # for the base class
 
 __all__ = ["Mujoco"]
 
@@ -24,7 +23,7 @@ _GLIDE_S = 0.025
 """Half a control period at 20 Hz: set-points glide from one command to the next."""
 
 
-class Mujoco(Driver):
+class Mujoco(SimulatedDriver["Simulation"]):
     """The paper's robot: two wheels, 22 kg, VLP-16, IMU, RGB-D camera, among people in a world or a ROS map.
 
     The ``map`` frame is the world's own. ``base_link`` is fixed to the body: under the middle of the axle, on
@@ -41,10 +40,6 @@ class Mujoco(Driver):
         super().__init__(options)
         assert isinstance(options, MujocoOptions)
         self._options = options
-        self._simulation: Simulation | None = None
-        self._truth: MujocoTruth | None = None
-        self._start: Pose2 | None = None
-        self._closed = False
 
     def setup(self, context: RobotContext) -> None:
         """Load the world, build the scene, place the robot, compile the kernels.
@@ -106,27 +101,6 @@ class Mujoco(Driver):
         return self._options.limits
 
     @property
-    def start(self) -> Pose2:
-        """As given, or as the world's file says, or the widest free spot."""
-        self._running()
-        assert self._start is not None
-        return self._start
-
-    def read(self) -> Sequence[Measurement]:
-        """Everything measured while the clock was waited on since the last call."""
-        return self._running().drain()
-
-    def command(self, twist: Twist2) -> None:
-        """Drive at this twist, as far as the limits allow, for at most 0.5 s."""
-        if not self._closed:
-            self._running().body.command(twist)
-
-    def stop(self) -> None:
-        """Brake at the limits and stand until the next command; from any thread."""
-        if self._simulation is not None:
-            self._simulation.body.halt()
-
-    @property
     def fault(self) -> BodyFault | None:
         """Whether it has fallen, or is being stood up."""
         return None if self._simulation is None else self._simulation.fault
@@ -138,14 +112,9 @@ class Mujoco(Driver):
 
     def close(self) -> None:
         """Stop; later commands are not heard."""
-        self.stop()
         if self._simulation is not None and not self._closed:
             self._simulation.close()
-        self._closed = True
-
-    def truth(self) -> GroundTruth | None:
-        """Pose, contacts, clearance, people, and the floor that can be explored."""
-        return self._truth
+        super().close()
 
     def filming(self, size: tuple[int, int]) -> Filming:
         """The robot in its world from above, and what its camera looks at in a corner.
@@ -163,8 +132,3 @@ class Mujoco(Driver):
             self._options.camera_mount,
             lambda: (simulation.body.track, simulation.data.qpos),
         )
-
-    def _running(self) -> Simulation:
-        if self._simulation is None:
-            raise RuntimeError("mujoco is used before setup()")
-        return self._simulation

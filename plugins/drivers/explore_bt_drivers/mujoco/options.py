@@ -100,14 +100,7 @@ class MujocoOptions(PluginOptions):
     @property
     def limits(self) -> MotionLimits:
         """The limits of motion as one value."""
-        return MotionLimits(
-            self.speed,
-            self.acceleration,
-            self.jerk,
-            self.turn_rate,
-            self.turn_acceleration,
-            self.turn_jerk,
-        )
+        return MotionLimits.of(self)
 
     @property
     def image_size(self) -> tuple[int, int] | None:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
-from typing import Protocol
 
 import mujoco
 
 from explore_bt.clock import ManualClock
 from explore_bt.interfaces import RobotContext
-from explore_bt.types import BodyFault, BodyFaultKind, Measurement, Pose2
+from explore_bt.types import BodyFault, BodyFaultKind, Pose2
 from explore_bt_drivers.battery import BatteryGauge
 from explore_bt_drivers.mujoco.body import Body, Stance, add_robot
 from explore_bt_drivers.mujoco.camera import RgbdCamera
@@ -23,6 +21,7 @@ from explore_bt_drivers.mujoco.lidar import VelodyneLike
 from explore_bt_drivers.mujoco.options import MujocoOptions
 from explore_bt_drivers.mujoco.scene import Scene, Surroundings
 from explore_bt_drivers.mujoco.track import ON_STEP, STEP_S, Track
+from explore_bt_drivers.simulated import SensorDeck
 
 __all__ = ["Simulation", "compiled"]
 
@@ -40,14 +39,6 @@ def compiled(scene: Scene, stand: Pose2) -> mujoco.MjModel:
     add_robot(scene.spec, stand)
     scene.spec.option.timestep = STEP_S
     return scene.spec.compile()
-
-
-class _Sensor(Protocol):
-    def begin(self, track: Track) -> None:
-        """Measure from here on."""
-
-    def measure(self, track: Track) -> Sequence[Measurement]:
-        """What was measured since the last call."""
 
 
 class Simulation(ManualClock):
@@ -73,16 +64,14 @@ class Simulation(ManualClock):
             if options.image_size is None
             else (RgbdCamera(model, self.surroundings, options, context.rng("camera")),)
         )
-        self._sensors: tuple[_Sensor, ...] = (
+        sensors = (
             InertialUnit(options, context.rng("imu")),
             Encoders(options, context.rng("wheels")),
             VelodyneLike(self.surroundings, options, context.rng("lidar")),
             *self._cameras,
             *(() if options.battery_life is None else (BatteryGauge(options.battery_life),)),
         )
-        self._queue: list[Measurement] = []
-        for sensor in self._sensors:
-            sensor.begin(self.body.track)
+        self.sensors: SensorDeck[Track] = SensorDeck(sensors, self.body.track)
 
     def wait_until(self, time_s: float) -> None:
         """Advance the world to ``time_s``."""
@@ -90,14 +79,7 @@ class Simulation(ManualClock):
         last_step = math.floor(self.now_s() / STEP_S + ON_STEP)
         while self.body.track.last_step < last_step:
             self._advance(min(last_step, self._next_stop()))
-            fresh = [found for sensor in self._sensors for found in sensor.measure(self.body.track)]
-            fresh.sort(key=lambda measurement: measurement.stamp_s)
-            self._queue += fresh
-
-    def drain(self) -> list[Measurement]:
-        """Everything measured since the last call, in time order."""
-        measured, self._queue = self._queue, []
-        return measured
+            self.sensors.measure(self.body.track)
 
     @property
     def fault(self) -> BodyFault | None:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import ClassVar
 
 from explore_bt.clock import Clock
-from explore_bt.interfaces import API_VERSION, Driver, GroundTruth, PluginOptions, RobotContext
-from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
+from explore_bt.interfaces import API_VERSION, PluginOptions, RobotContext
+from explore_bt.types import MotionLimits, Pose2, Twist2
 from explore_bt_drivers.people import Crowd
 from explore_bt_drivers.sim2d.arena import Arena
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.sim2d.simulation import Simulation
 from explore_bt_drivers.sim2d.truth import Sim2dTruth
 from explore_bt_drivers.sim2d.venue import Venue
+from explore_bt_drivers.simulated import SimulatedDriver
 from explore_bt_drivers.world import World, observable_floor, stand_of
 
 __all__ = ["Sim2d"]
@@ -21,7 +21,7 @@ __all__ = ["Sim2d"]
 _WARM_UP_S = 0.2
 
 
-class Sim2d(Driver):
+class Sim2d(SimulatedDriver[Simulation]):
     """A round robot with lidar, IMU and slipping wheels among people, in a drawn world or a ROS map.
 
     The ``map`` frame is the world's own. Robots of one mission whose worlds are the same file share it: they
@@ -38,10 +38,6 @@ class Sim2d(Driver):
         assert isinstance(options, Sim2dOptions)
         self._options = options
         self._arena: Arena | None = None
-        self._simulation: Simulation | None = None
-        self._truth: Sim2dTruth | None = None
-        self._start: Pose2 | None = None
-        self._closed = False
 
     def setup(self, context: RobotContext) -> None:
         """Load the world, place the robot, compile the kernels.
@@ -82,41 +78,6 @@ class Sim2d(Driver):
     def limits(self) -> MotionLimits:
         """What the simulated body can do."""
         return self._options.limits
-
-    @property
-    def start(self) -> Pose2:
-        """As given, or as the world's file says, or the widest free spot."""
-        self._running()
-        assert self._start is not None
-        return self._start
-
-    def read(self) -> Sequence[Measurement]:
-        """Everything measured while the clock was waited on since the last call."""
-        return self._running().drain()
-
-    def command(self, twist: Twist2) -> None:
-        """Drive at this twist, as far as the limits allow, for at most 0.5 s."""
-        if not self._closed:
-            self._running().body.command(twist)
-
-    def stop(self) -> None:
-        """Brake at the limits and stand until the next command; from any thread."""
-        if self._simulation is not None:
-            self._simulation.body.halt()
-
-    def close(self) -> None:
-        """Stop; later commands are not heard."""
-        self.stop()
-        self._closed = True
-
-    def truth(self) -> GroundTruth | None:
-        """Pose, contacts, clearance, people, and the floor that can be explored."""
-        return self._truth
-
-    def _running(self) -> Simulation:
-        if self._simulation is None:
-            raise RuntimeError("sim2d is used before setup()")
-        return self._simulation
 
 
 def _rehearse(world: World, options: Sim2dOptions, stand: Pose2, context: RobotContext, crowd: Crowd) -> None:

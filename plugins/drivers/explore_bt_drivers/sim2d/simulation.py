@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from explore_bt.interfaces import RobotContext
-from explore_bt.types import Measurement, Pose2
+from explore_bt.types import Pose2
 from explore_bt_drivers.battery import BatteryGauge
 from explore_bt_drivers.people import Crowd
 from explore_bt_drivers.sim2d.arena import Arena
-from explore_bt_drivers.sim2d.body import Body
+from explore_bt_drivers.sim2d.body import Body, Track
 from explore_bt_drivers.sim2d.company import Company
 from explore_bt_drivers.sim2d.imu import InertialUnit
 from explore_bt_drivers.sim2d.lidar import Lidar
@@ -15,13 +15,14 @@ from explore_bt_drivers.sim2d.motion import STEP_S
 from explore_bt_drivers.sim2d.odometry import Wheels
 from explore_bt_drivers.sim2d.options import Sim2dOptions
 from explore_bt_drivers.sim2d.touches import Touches
+from explore_bt_drivers.simulated import SensorDeck
 from explore_bt_drivers.world import World
 
 __all__ = ["Simulation"]
 
 
 class Simulation:
-    """A dweller of an arena; what its sensors measure queues up until it is drained."""
+    """A dweller of an arena."""
 
     def __init__(
         self, arena: Arena, options: Sim2dOptions, start: Pose2, context: RobotContext, crowd: Crowd
@@ -38,15 +39,13 @@ class Simulation:
             crowd,
             Company(arena.bodies),
         )
-        self._sensors = (
+        sensors = (
             InertialUnit(options, context.rng("imu")),
             Wheels(options, start, context.rng("wheels")),
             self._lidar,
             *(() if options.battery_life is None else (BatteryGauge(options.battery_life),)),
         )
-        self._queue: list[Measurement] = []
-        for sensor in self._sensors:
-            sensor.begin(self.body.track)
+        self.sensors: SensorDeck[Track] = SensorDeck(sensors, self.body.track)
         arena.admit(self)
 
     def enter(self, world: World) -> None:
@@ -62,11 +61,4 @@ class Simulation:
 
     def measure(self) -> None:
         """Take what the sensors have to tell by now."""
-        fresh = [found for sensor in self._sensors for found in sensor.measure(self.body.track)]
-        fresh.sort(key=lambda measurement: measurement.stamp_s)
-        self._queue += fresh
-
-    def drain(self) -> list[Measurement]:
-        """Everything measured since the last call, in time order."""
-        measured, self._queue = self._queue, []
-        return measured
+        self.sensors.measure(self.body.track)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from explore_bt.types import MotionLimits, Pose2, Twist2
 from explore_bt_drivers.mujoco.body.balance import CONTROL_S, Balance
 from explore_bt_drivers.mujoco.body.build import Joints
+from explore_bt_drivers.mujoco.body.footing import footing
 from explore_bt_drivers.mujoco.body.foresight import Foresight, Wish
 from explore_bt_drivers.mujoco.body.lift import Lift
 from explore_bt_drivers.mujoco.body.plant import Plant
@@ -54,7 +55,7 @@ class Body:
     def __init__(
         self, model: mujoco.MjModel, data: mujoco.MjData, limits: MotionLimits, step: int = 0
     ) -> None:
-        """Take charge of the robot in a model, which stands where the model says."""
+        """Take charge of the robot in a model, and put its wheels on what is under them there."""
         self._model, self._data = model, data
         plant = Plant.of(model)
         self._balance, self._foresight = Balance(plant), Foresight(plant, CONTROL_S)
@@ -73,6 +74,10 @@ class Body:
         self._calm_step = 0
         self.stance = Stance.STANDING
         self.falls = 0
+        mujoco.mj_forward(model, data)
+        at = self._qpos
+        here = planar_pose(data.qpos[at : at + 3].tolist(), data.qpos[at + 3 : at + 7].tolist())
+        data.qpos[at : at + 7] = footing(model, data, here)
         mujoco.mj_forward(model, data)
         self.track = Track(self._state(), step)
         self._setpoint = _STILL
@@ -104,7 +109,9 @@ class Body:
         """
         if self.stance is Stance.FALLEN:
             self.halt()
-            self._lift = Lift(self.track.now, self.pose.yaw_rad, where)
+            here = self.pose
+            stand = Pose2(*where, here.yaw_rad) if where else here
+            self._lift = Lift(self.track.now, footing(self._model, self._data, stand))
             self.stance = Stance.LIFTED
 
     def advance(self, last_step: int) -> None:

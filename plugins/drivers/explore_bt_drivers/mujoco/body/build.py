@@ -35,7 +35,7 @@ class Joints:
 
 
 def add_robot(spec: mujoco.MjSpec, start: Pose2) -> None:
-    """Put the robot into a scene, upright, ``base_link`` on the floor at ``start``.
+    """Put the robot into a scene, upright, ``base_link`` on the plane of the floor at ``start``.
 
     ``base_link`` is fixed to the body, under the middle of the axle by the radius of the wheels.
     """

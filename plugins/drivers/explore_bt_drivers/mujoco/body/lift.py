@@ -6,7 +6,6 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt_drivers.mujoco.body.posture import upright
 from explore_bt_drivers.mujoco.figures import WHEEL_RADIUS_M
 from explore_bt_drivers.mujoco.track import STEP_S
 
@@ -20,17 +19,13 @@ class Lift:
 
     Args:
         row: the body's state, as in a ``Track``.
-        yaw_rad: the heading that it keeps.
-        where: its axle goes to, metres, ``map`` frame; None: where it is.
+        end: (7,) float64, position and quaternion (w x y z) of ``base_link`` that it is put to.
     """
 
-    def __init__(
-        self, row: NDArray[np.float64], yaw_rad: float, where: tuple[float, float] | None = None
-    ) -> None:
-        self._quaternion = row[3:7].copy()
+    def __init__(self, row: NDArray[np.float64], end: NDArray[np.float64]) -> None:
+        self._quaternion, self._end = row[3:7].copy(), end[3:]
         self._axle = row[:3] + WHEEL_RADIUS_M * _up(self._quaternion)
-        self._end = np.array(upright(yaw_rad))
-        self._axle_end = np.array([*(where or self._axle[:2]), WHEEL_RADIUS_M])
+        self._axle_end = end[:3] + WHEEL_RADIUS_M * _up(end[3:])
         self._steps, self._step = round(_LIFT_S / STEP_S), 0
         self._before = self._place(0.0)
 
