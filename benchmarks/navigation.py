@@ -43,7 +43,8 @@ RADIUS_M, MARGIN_M, SEPARATION = 0.25, 0.02, 1.7
 WINDOW_M = 10.0
 TASTES: dict[str, dict[str, float]] = {
     "skeleton": {},
-    "roomy": {"comfortable": 1.5, "clearance_weight": 12.0},
+    "roomy": {"comfortable": 2.5, "clearance_weight": 30.0},
+    "roomiest": {"comfortable": 1.8, "clearance_weight": 300.0},
 }
 INTERPOLATION_M = 0.002  # between cell centres, a bilinear clearance is above the exact one by less
 FIELDS = ("clearance_m", "passable", "skeleton")
@@ -290,7 +291,7 @@ def widest_passages(grid: OccupancyGrid, pairs: list[tuple[Cell, Cell]]) -> dict
 def peer_row(name: str, figures: dict[str, Any]) -> str:
     """One line of the table of peers."""
     if "missing" in figures:
-        return f"| {name} | not installed: `{figures['missing']}` ||||||||"
+        return f"| {name} | not installed: `{figures['missing']}` ||||||||||"
     ratios = [
         f"{figures[taste]['length_ratio']:.2f} (≤ {figures[taste]['longest_ratio']:.2f}) | "
         f"{figures[taste]['clearance_ratio']:.2f}"
@@ -329,7 +330,8 @@ def planner_part(arguments: argparse.Namespace) -> dict[str, Any]:
     print("\n{windows} random windows: {cells_that_differ} cells differ".format(**figures["bit_equality"]))
     pairs = pairs_in(arena, arguments.pairs, rng)
     print("\n| peer | pairs | its time | to ours | length | clearance | roomy: length | clearance | ", end="")
-    print("its least | below r |\n|---|---|---|---|---|---|---|---|---|---|")
+    print("roomiest: length | clearance | its least | below r |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|---|")
     figures["peers"] = compare(arena, pairs, arguments.peer_seconds)
     print()
     for taste in TASTES:

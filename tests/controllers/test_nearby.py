@@ -30,6 +30,34 @@ def test_room_is_the_distance_to_the_nearest_point_to_a_cell(seed, resolution):
     assert np.abs(room - exact).max() <= 2.0 * 0.5 * np.sqrt(2.0) * CELL + 1e-6
 
 
+def test_the_same_surroundings_have_the_same_field_to_the_last_bit():
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-2.0, 2.0, (60, 2))
+    grid = OccupancyGrid(*floor())
+    fields, kept = set(), []
+    for _ in range(200):
+        kept.append(np.empty(int(rng.integers(1, 5000)), dtype=np.uint8))  # elsewhere in memory
+        nearby = Nearby()
+        nearby.see(Surroundings(0.0, points.copy(), grid))
+        fields.add(nearby.field(0.0, 0.0).room.tobytes())
+    assert len(fields) == 1
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(0, 10_000))
+def test_the_field_is_the_exact_distance_between_cells(seed):
+    points = np.random.default_rng(seed).uniform(-2.3, 2.3, (seed % 12, 2))
+    nearby = Nearby()
+    nearby.see(Surroundings(0.0, points, OccupancyGrid(*floor())))
+    room = nearby.field(0.0, 0.0).room
+    taken = np.floor((points + 2.4) / CELL).astype(int)
+    row, col = np.indices(room.shape)
+    exact = np.full(room.shape, 100.0)
+    for x, y in taken:
+        exact = np.minimum(exact, CELL * np.hypot(row - y, col - x))
+    assert np.allclose(room, exact, atol=1e-5)
+
+
 def test_what_is_not_known_is_an_obstacle_and_so_is_what_only_the_map_shows():
     cells, resolution, origin = floor()
     cells[:, 100:] = UNKNOWN  # x > 1

@@ -7,7 +7,7 @@ import pytest
 from explore_bt_controllers.limiter import next_velocity
 from explore_bt_controllers.noise import NoiseBank
 from explore_bt_controllers.proposals import propose
-from explore_bt_controllers.rollout import Bounds, Field, Prices, Route, Start, World, costs_of
+from explore_bt_controllers.rollout import BLOCK, Bounds, Field, Prices, Route, Start, World, costs_of
 from scipy.ndimage import map_coordinates
 
 BOUNDS = Bounds(-0.1, 0.5, 0.5, 2.0, 1.2, 2.0, 8.0)
@@ -81,27 +81,47 @@ def price_of_place(world, k, x, y, v):
     return price
 
 
+def sequences(blocks):
+    """(N, K) of (G, K, BLOCK)."""
+    return np.moveaxis(blocks, 1, 2).reshape(-1, blocks.shape[1])
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_costs_are_those_of_a_slow_version(seed):
     rng = np.random.default_rng(seed)
     scene = world(seed)
-    bank = rng.normal(0.0, 0.3, (2, STEPS, 300)).astype(np.float32)
+    bank = rng.normal(0.0, 0.3, (2, 4, STEPS, BLOCK)).astype(np.float32)
     targets = np.stack((rng.uniform(-0.2, 0.6, STEPS), rng.uniform(-0.5, 0.5, STEPS)))
-    costs = costs_of(scene, targets, bank, 3, 17, 200)
-    slow = [slow_cost(scene, targets + np.stack((bank[0, :, 3 + n], bank[1, :, 17 + n]))) for n in range(200)]
+    costs = costs_of(scene, targets, bank, (1, 2), 200)
+    asked = [np.stack((v, w)) for v, w in zip(sequences(bank[0, 1:]), sequences(bank[1, 2:]), strict=False)]
+    slow = [slow_cost(scene, targets + each) for each in asked[:200]]
     assert np.allclose(costs, slow, rtol=1e-4, atol=1e-3)
 
 
 def test_the_first_proposal_follows_the_path():
     scene = world(0)._replace(moving=np.empty((STEPS, 0, 4)), prices=Prices(widest=1.0, hard=0.0, soft=0.1))
     asked = propose(scene, STEPS, 0.3, 1.0)
-    costs = costs_of(scene, np.zeros((2, STEPS)), asked, 0, 0, asked.shape[2])
+    count = asked.shape[2]
+    block = np.pad(asked[:, None], ((0, 0), (0, 0), (0, 0), (0, BLOCK - count)))
+    costs = costs_of(scene, np.zeros((2, STEPS)), block, (0, 0), count)
     assert costs.argmin() == 0
 
 
 def test_noise_comes_in_opposite_pairs_that_hang_together_in_time():
     bank = NoiseBank(np.random.default_rng(0), 200, STEPS, (0.1, 0.4), 4.0).sequences
-    assert np.array_equal(bank[:, :, 0::2], -bank[:, :, 1::2])
-    after, before = bank[:, 1:, ::2], bank[:, :-1, ::2]
+    assert np.array_equal(bank[..., 0::2], -bank[..., 1::2])
+    after, before = bank[:, :, 1:, ::2], bank[:, :, :-1, ::2]
     assert np.corrcoef(after.ravel(), before.ravel())[0, 1] > 0.9
-    assert np.allclose(bank[:, :, ::8].std(axis=(1, 2)), [0.1, 0.4], rtol=0.1)
+    assert np.allclose(bank[..., ::8].std(axis=(1, 2, 3)), [0.1, 0.4], rtol=0.1)
+    assert np.allclose(
+        bank[..., 6::8].std(axis=(1, 2, 3)), 0.1 * bank[..., ::8].std(axis=(1, 2, 3)), rtol=0.1
+    )
+
+
+def test_the_mean_of_the_noise_is_that_of_the_samples_used():
+    rng = np.random.default_rng(1)
+    noise = NoiseBank(rng, 200, STEPS, (0.1, 0.4), 4.0)
+    weights = rng.random(200).astype(np.float32)
+    firsts = noise.runs()
+    slow = [weights @ sequences(noise.sequences[row, first:])[:200] for row, first in enumerate(firsts)]
+    assert np.allclose(noise.mean(firsts, weights), slow, atol=1e-4)

@@ -20,6 +20,7 @@ _CELL_M = 0.04
 _COUNT = 120  # R: cells across the field
 _OF_IT_M = 0.15  # returns this far beyond the radius of a moving obstacle still are its own
 _FAR_M = 100.0
+_NOT_FOUND, _STEP = np.int32(2500), np.int32(1)  # cells: as far as _FAR_M, and one
 _NOWHERE = Field(np.full((2, 2), _FAR_M, dtype=np.float32), 0.0, 0.0, 1.0)
 
 
@@ -87,8 +88,7 @@ def _field_of(surroundings: Surroundings, x: float, y: float) -> Field:
     reach = round(1.5 * grid.resolution_m / _CELL_M)
     near = cv2.dilate(shown, np.ones((2 * reach + 1, 2 * reach + 1), dtype=np.uint8))
     free = _free(grid.cells, *grid.origin_xy, grid.resolution_m, x0, y0, own, shown, near)
-    room = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return Field(room * np.float32(_CELL_M), x0 + 0.5 * _CELL_M, y0 + 0.5 * _CELL_M, _CELL_M)
+    return Field(_room(free), x0 + 0.5 * _CELL_M, y0 + 0.5 * _CELL_M, _CELL_M)
 
 
 @njit(cache=True)
@@ -127,3 +127,39 @@ def _free(cells, map_x, map_y, resolution, x0, y0, own, shown, near):  # type: i
                 is_known = cells[row, col] == FREE or (cells[row, col] == OCCUPIED and is_explained)
                 free[i, j] = is_known and (own[i, j] or not shown[i, j])
     return free
+
+
+@njit(cache=True)
+def _room(free):  # type: ignore[no-untyped-def]  # numba kernel
+    """(R, R) float32, metres from each cell to the nearest that is not free; exact, and always the same bits.
+
+    cv2's precise transform is not: its last digit depends on where in memory the image lies, and one digit is
+    enough for another course among people.
+    """
+    count = free.shape[0]
+    steps = np.empty((count, count), np.int32)  # to the nearest one in the column
+    for i in range(count):
+        for j in range(count):
+            before = steps[i - 1, j] if i > 0 else _NOT_FOUND
+            steps[i, j] = min(before + _STEP, _NOT_FOUND) if free[i, j] else np.int32(0)
+    for i in range(count - 2, -1, -1):
+        for j in range(count):
+            steps[i, j] = min(steps[i, j], steps[i + 1, j] + _STEP)
+    room = np.empty((count, count), np.float32)
+    wide = np.full(3 * count, _NOT_FOUND * _NOT_FOUND, np.int32)  # a row of squares, nothing on either side
+    best = np.empty(count, np.int32)
+    for i in range(count):
+        for j in range(count):
+            best[j] = wide[count + j] = steps[i, j] * steps[i, j]
+        reach, farthest = 1, best.max()
+        while reach < count and reach * reach < farthest:
+            square = np.int32(reach * reach)
+            left, right = wide[count - reach :], wide[count + reach :]
+            for j in range(count):
+                best[j] = min(best[j], min(left[j], right[j]) + square)
+            if reach % 4 == 0:
+                farthest = best.max()
+            reach += 1
+        for j in range(count):
+            room[i, j] = np.float32(_CELL_M) * np.sqrt(np.float32(best[j]))
+    return room

@@ -14,8 +14,22 @@ from explore_bt_controllers.rollout import World
 
 __all__ = ["propose"]
 
-_LINES = ((0.0, 1.0), (0.0, 0.4), (0.25, 1.0), (-0.25, 1.0), (0.5, 1.0), (-0.5, 1.0), (1.0, 0.7), (-1.0, 0.7))
-"""Offset from the path as a share of the greatest one, and share of the speed wanted there."""
+_ON = 1e9
+_LINES = (
+    (0.0, 1.0, _ON),
+    (0.0, 0.4, _ON),
+    (0.0, 1.0, 1.6),
+    (0.0, 1.0, 0.8),
+    (0.0, 1.0, 0.4),
+    (0.25, 1.0, _ON),
+    (-0.25, 1.0, _ON),
+    (0.5, 1.0, _ON),
+    (-0.5, 1.0, _ON),
+    (1.0, 0.7, _ON),
+    (-1.0, 0.7, _ON),
+)
+"""Offset from the path as a share of the greatest one, share of the speed wanted there, seconds after which
+it brakes: so it goes on until somebody is near, where else it would wait as soon as it sees them come."""
 _turn_rate = njit(cache=True)(turn_rate)
 
 
@@ -28,15 +42,17 @@ def propose(world: World, steps: int, convergence_m: float, widest_m: float) -> 
         convergence_m: arc length over which an offset is taken up.
         widest_m: greatest offset from the path.
     """
-    beside, shares = np.array(_LINES).T * ((widest_m,), (1.0,))
+    beside, shares, untils = np.array(_LINES).T * ((widest_m,), (1.0,), (1.0 / world.step_s,))
     asked = np.zeros((2, steps, len(_LINES) + 2), dtype=np.float32)
-    _by_feedback(world.start, world.bounds, world.route, world.step_s, convergence_m, beside, shares, asked)
+    _by_feedback(
+        world.start, world.bounds, world.route, world.step_s, convergence_m, beside, shares, untils, asked
+    )
     asked[0, :, -1] = world.bounds.lowest
     return asked
 
 
 @njit(cache=True)
-def _by_feedback(start, bounds, route, step_s, convergence_m, beside, shares, asked):  # type: ignore[no-untyped-def]  # numba kernel
+def _by_feedback(start, bounds, route, step_s, convergence_m, beside, shares, untils, asked):  # type: ignore[no-untyped-def]  # numba kernel
     """Fills ``asked`` with what ``pursuit``'s feedback would ask for along a line beside the path."""
     for p in range(len(beside)):
         x, y, yaw, along = start.x, start.y, start.yaw, start.along
@@ -49,7 +65,7 @@ def _by_feedback(start, bounds, route, step_s, convergence_m, beside, shares, as
             error = math.atan2(
                 math.sin(yaw) * tx - math.cos(yaw) * ty, math.cos(yaw) * tx + math.sin(yaw) * ty
             )
-            target = shares[p] * wanted
+            target = shares[p] * wanted if k < untils[p] else 0.0
             rate = _turn_rate(max(v, 0.1), lateral - beside[p], error, bend, change, convergence_m)
             rate = min(max(rate, -bounds.turn_rate), bounds.turn_rate)
             asked[0, k, p], asked[1, k, p] = target, rate

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,13 +11,19 @@ from numpy.typing import NDArray
 
 from explore_bt_controllers.limiter import approach, within
 
-__all__ = ["Bounds", "Field", "Prices", "Route", "Start", "World", "costs_of"]
+__all__ = ["BLOCK", "Bounds", "Field", "Prices", "Route", "Start", "World", "costs_of"]
 
-_BLOCK = 128  # samples rolled out together: their state stays in the nearest cache
-_DEVIATION_M = 0.15  # offset at which deviating costs half of its price
-_SLOW_MPS = 0.05  # places to be driven no faster are alike
-_LEAST_SHRINK = 0.3  # of 1 - curvature · offset: beyond it the projection would jump
-_AT_REST = 0.02  # part of the price of being touched that is due at rest too
+_F = np.float32  # kernels compute in single precision, of which a register holds twice as many
+
+BLOCK = 128
+"""Samples rolled out together: their state stays in the nearest cache, and loops of known length are fast."""
+_APART = 16  # rows a power of two apart would be in each other's way in the cache
+_DEVIATION_M = _F(0.15)  # offset at which deviating costs half of its price
+_SLOW_MPS = _F(0.05)  # places to be driven no faster are alike
+_LEAST_SHRINK = _F(0.3)  # of 1 - curvature · offset: beyond it the projection would jump
+_AT_REST = _F(0.02)  # part of the price of being touched that is due at rest too
+_NONE, _HALF, _ALL = _F(0.0), _F(0.5), _F(1.0)
+_SIXTH, _24TH, _120TH = _F(1.0 / 6.0), _F(1.0 / 24.0), _F(1.0 / 120.0)
 
 
 class Start(NamedTuple):
@@ -117,8 +124,13 @@ class World(NamedTuple):
     step_s: float
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
-def costs_of(world, targets, noise, first_v, first_w, count):  # type: ignore[no-untyped-def]  # numba kernel
+def costs_of(
+    world: World,
+    targets: NDArray[np.float64],
+    noise: NDArray[np.float32],
+    firsts: tuple[int, int],
+    count: int,
+) -> NDArray[np.float64]:
     """Cost of each sampled motion.
 
     A sample asks for the velocities ``targets + noise`` step after step and gets what the limits of
@@ -128,45 +140,72 @@ def costs_of(world, targets, noise, first_v, first_w, count):  # type: ignore[no
     Args:
         world: see ``World``.
         targets: (2, K) float64, m/s and rad/s.
-        noise: (2, K, B) float32, m/s and rad/s, a bank of sequences.
-        first_v: sample n takes column ``first_v + n`` of the bank for its linear velocity;
-        first_w: and column ``first_w + n`` for its turn rate.
-        count: N, how many samples.
+        noise: (2, G, K, BLOCK) float32, m/s and rad/s, a bank of G blocks of sequences.
+        firsts: blocks of the bank with which linear velocity and turn rate begin.
+        count: N, how many samples: block after block, of the last one as many as are left.
 
     Returns:
         (N,) float64.
     """
+    return np.asarray(_costs(_single(world), targets.astype(_F), noise, *firsts, count))
+
+
+def _single(world: World) -> World:
+    """The same in single precision, as far as it is not yet."""
     start, bounds, route, field, moving, prices, step_s = world
+    narrow: Callable[[float], Any] = np.float32
+    return World(
+        Start(*map(narrow, start)),
+        Bounds(*map(narrow, bounds)),
+        Route(route.samples.astype(_F, copy=False), narrow(route.spacing)),
+        Field(field.room, *map(narrow, field[1:])),
+        moving.astype(_F, copy=False),
+        Prices(*map(narrow, prices)),
+        narrow(step_s),
+    )
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _costs(world, targets, noise, first_v, first_w, count):  # type: ignore[no-untyped-def]  # numba kernel
+    """See ``costs_of``; everything in single precision but the sums."""
     total = np.zeros(count)
-    x, y, c, s = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
-    v, a, w, b = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
-    way, turn, cost, room = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
-    arc, lateral, facing, wanted = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
-    for first in range(0, count, _BLOCK):
-        size = min(_BLOCK, count - first)
-        x[:], y[:], arc[:], cost[:] = start.x, start.y, start.along, 0.0
-        c[:], s[:] = np.cos(start.yaw), np.sin(start.yaw)
-        v[:], a[:] = start.linear, start.linear_gain
-        w[:], b[:] = start.angular, start.angular_gain
-        for k in range(targets.shape[1]):
-            asked_v = noise[0, k, first_v + first : first_v + first + size]
-            asked_w = noise[1, k, first_w + first : first_w + first + size]
-            _accelerate(
-                v, a, way, targets[0, k], asked_v, step_s,
-                bounds.lowest, bounds.highest, bounds.acceleration, bounds.jerk,
-            )  # fmt: skip
-            _accelerate(
-                w, b, turn, targets[1, k], asked_w, step_s,
-                -bounds.turn_rate, bounds.turn_rate, bounds.turn_acceleration, bounds.turn_jerk,
-            )  # fmt: skip
-            _move(x, y, c, s, way, turn, size)
-            _place(arc, lateral, facing, wanted, x, y, c, s, way, route.samples, route.spacing, size)
-            _look_up(room, x, y, field.room, field.x0, field.y0, field.resolution, size)
-            _charge(cost, v, a, b, lateral, facing, wanted, room, prices, bounds.highest, size)
-            for m in range(moving.shape[1]):
-                _charge_moving(cost, x, y, v, moving[k, m], prices, bounds.highest, size)
-        total[first : first + size] = step_s * cost[:size]
+    state, found = np.empty((16, BLOCK + _APART), _F), np.empty((6, BLOCK + _APART), _F)
+    at = np.empty(BLOCK, np.int32)
+    for first in range(0, count, BLOCK):
+        size, number = min(BLOCK, count - first), first // BLOCK
+        asked_v, asked_w = noise[0, first_v + number], noise[1, first_w + number]
+        cost = _roll(world, targets, asked_v, asked_w, state, found, at)
+        total[first : first + size] = world.step_s * cost[:size]
     return total
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _roll(world, targets, asked_v, asked_w, state, found, at):  # type: ignore[no-untyped-def]  # numba kernel
+    """(BLOCK,) prices per second of a block of samples, summed over the steps; the last three are scratch."""
+    start, bounds, route, field, moving, prices, step_s = world
+    x, y, c, s, v, a, w, b = state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7]
+    way, turn, cost, room = state[8], state[9], state[10], state[11]
+    arc, lateral, facing, wanted = state[12], state[13], state[14], state[15]
+    x[:], y[:], arc[:], cost[:] = start.x, start.y, start.along, _NONE
+    c[:], s[:] = np.cos(start.yaw), np.sin(start.yaw)
+    v[:], a[:] = start.linear, start.linear_gain
+    w[:], b[:] = start.angular, start.angular_gain
+    for k in range(targets.shape[1]):
+        _accelerate(
+            v, a, way, targets[0, k], asked_v[k], step_s,
+            bounds.lowest, bounds.highest, bounds.acceleration, bounds.jerk,
+        )  # fmt: skip
+        _accelerate(
+            w, b, turn, targets[1, k], asked_w[k], step_s,
+            -bounds.turn_rate, bounds.turn_rate, bounds.turn_acceleration, bounds.turn_jerk,
+        )  # fmt: skip
+        _move(x, y, c, s, way, turn)
+        _place(arc, lateral, facing, wanted, x, y, c, s, way, route.samples, route.spacing, at, found)
+        _look_up(room, x, y, field.room, field.x0, field.y0, field.resolution, at, found)
+        _charge(cost, v, a, b, lateral, facing, wanted, room, prices, bounds.highest)
+        for m in range(moving.shape[1]):
+            _charge_moving(cost, x, y, v, moving[k, m], prices, bounds.highest)
+    return cost
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -176,21 +215,22 @@ def _accelerate(v, a, way, target, asked, step_s, lowest, highest, acceleration,
     This is ``next_velocity`` for a target that rests: then the range of velocities may cut the target, which
     saves two roots in three.
     """
-    for n in range(asked.size):
+    for n in range(BLOCK):
         aim = min(max(target + asked[n], lowest), highest)
         gain = within(approach(aim - v[n], step_s, jerk), a[n], step_s, acceleration, jerk)
         after = v[n] + gain * step_s
-        way[n] = 0.5 * (v[n] + after) * step_s
+        way[n] = _HALF * (v[n] + after) * step_s
         v[n], a[n] = after, gain
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _move(x, y, c, s, way, turn, size):  # type: ignore[no-untyped-def]  # numba kernel
+def _move(x, y, c, s, way, turn):  # type: ignore[no-untyped-def]  # numba kernel
     """Along the chord of the arc; c, s are cosine and sine of the heading, by their series."""
-    for n in range(size):
-        half = 0.5 * turn[n]
+    for n in range(BLOCK):
+        half = _HALF * turn[n]
         square = half * half
-        ch, sh = 1.0 - square * (0.5 - square / 24.0), half * (1.0 - square * (1.0 / 6.0 - square / 120.0))
+        ch = _ALL - square * (_HALF - square * _24TH)
+        sh = half * (_ALL - square * (_SIXTH - square * _120TH))
         middle_c, middle_s = c[n] * ch - s[n] * sh, s[n] * ch + c[n] * sh
         x[n] += way[n] * middle_c
         y[n] += way[n] * middle_s
@@ -198,66 +238,81 @@ def _move(x, y, c, s, way, turn, size):  # type: ignore[no-untyped-def]  # numba
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _place(arc, lateral, facing, wanted, x, y, c, s, way, route, spacing, size):  # type: ignore[no-untyped-def]  # numba kernel
-    """Projects on the leg by one Newton step from where the last place and the way driven point to."""
-    last = float(route.shape[0] - 1)
-    for n in range(size):
-        i = np.uintp(min(max((arc[n] + way[n]) / spacing, 0.0), last))
-        tx, ty = route[i, 2], route[i, 3]
-        ex, ey = x[n] - route[i, 0], y[n] - route[i, 1]
-        off = ey * tx - ex * ty
-        shrink = max(1.0 - route[i, 4] * off, _LEAST_SHRINK)
-        arc[n] = i * spacing + (ex * tx + ey * ty) / shrink
-        lateral[n] = off
-        facing[n] = c[n] * tx + s[n] * ty
-        wanted[n] = route[i, 6]
+def _place(arc, lateral, facing, wanted, x, y, c, s, way, route, spacing, at, found):  # type: ignore[no-untyped-def]  # numba kernel
+    """Projects on the leg by one Newton step from where the last place and the way driven point to.
+
+    First which samples, then what they hold, then sums: a loop that looks things up is not vectorised, and
+    one that writes three arrays not either.
+    """
+    last = _F(route.shape[0] - 1)
+    px, py, tx, ty, bend = found[0], found[1], found[2], found[3], found[4]
+    for n in range(BLOCK):
+        at[n] = np.int32(min(max((arc[n] + way[n]) / spacing, _NONE), last))
+    for n in range(BLOCK):
+        i = np.uintp(at[n])
+        px[n], py[n], tx[n], ty[n] = route[i, 0], route[i, 1], route[i, 2], route[i, 3]
+        bend[n], wanted[n] = route[i, 4], route[i, 6]
+    for n in range(BLOCK):
+        lateral[n] = (y[n] - py[n]) * tx[n] - (x[n] - px[n]) * ty[n]
+    for n in range(BLOCK):
+        facing[n] = c[n] * tx[n] + s[n] * ty[n]
+    for n in range(BLOCK):
+        ahead = (x[n] - px[n]) * tx[n] + (y[n] - py[n]) * ty[n]
+        arc[n] = _F(at[n]) * spacing + ahead / max(_ALL - bend[n] * lateral[n], _LEAST_SHRINK)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _look_up(room, x, y, field, x0, y0, resolution, size):  # type: ignore[no-untyped-def]  # numba kernel
-    """Bilinear."""
+def _look_up(room, x, y, field, x0, y0, resolution, at, found):  # type: ignore[no-untyped-def]  # numba kernel
+    """Bilinear; which cells, what they hold, then the sums."""
     width, cells = np.int32(field.shape[1]), field.reshape(-1)
-    top, right = field.shape[0] - 1.001, field.shape[1] - 1.001
-    for n in range(size):
-        fx = min(max((x[n] - x0) / resolution, 0.0), right)
-        fy = min(max((y[n] - y0) / resolution, 0.0), top)
+    top, right = _F(field.shape[0] - 1.001), _F(field.shape[1] - 1.001)
+    u, v, one, two, three, four = found[0], found[1], found[2], found[3], found[4], found[5]
+    for n in range(BLOCK):
+        fx = min(max((x[n] - x0) / resolution, _NONE), right)
+        fy = min(max((y[n] - y0) / resolution, _NONE), top)
         i, j = np.int32(fy), np.int32(fx)
-        px, py = fx - np.float64(j), fy - np.float64(i)
-        k = i * width + j
-        room[n] = (1.0 - py) * ((1.0 - px) * cells[k] + px * cells[k + 1]) + py * (
-            (1.0 - px) * cells[k + width] + px * cells[k + width + 1]
-        )
+        u[n], v[n] = fx - _F(j), fy - _F(i)
+        at[n] = i * width + j
+    for n in range(BLOCK):
+        k = np.uintp(at[n])
+        above = k + np.uintp(width)
+        one[n], two[n] = cells[k], cells[k + np.uintp(1)]
+        three[n], four[n] = cells[above], cells[above + np.uintp(1)]
+    for n in range(BLOCK):
+        low = one[n] + u[n] * (two[n] - one[n])
+        high = three[n] + u[n] * (four[n] - three[n])
+        room[n] = low + v[n] * (high - low)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _charge(cost, v, a, b, lateral, facing, wanted, room, prices, highest, size):  # type: ignore[no-untyped-def]  # numba kernel
+def _charge(cost, v, a, b, lateral, facing, wanted, room, prices, highest):  # type: ignore[no-untyped-def]  # numba kernel
     """Everything but what moves."""
     lag_price, band = prices.speed / highest, prices.soft - prices.hard
-    for n in range(size):
+    for n in range(BLOCK):
         lag = wanted[n] - v[n] * facing[n]
         off, square = abs(lateral[n]), lateral[n] * lateral[n]
-        tight = min(max((prices.soft - room[n]) / band, 0.0), 1.0) * v[n] / highest
+        tight = min(max((prices.soft - room[n]) / band, _NONE), _ALL) * v[n] / highest
         short = prices.hard - room[n]
         cost[n] += (
             lag_price * lag * lag / (wanted[n] + _SLOW_MPS)
             + prices.deviation * square / (square + _DEVIATION_M * _DEVIATION_M)
             + prices.offset * off
-            + prices.beyond * max(off - prices.widest, 0.0)
-            + prices.heading * (1.0 - facing[n])
+            + prices.beyond * max(off - prices.widest, _NONE)
+            + prices.heading * (_ALL - facing[n])
             + prices.acceleration * a[n] * a[n]
             + prices.turn_acceleration * b[n] * b[n]
-            + prices.reverse * max(-v[n], 0.0)
+            + prices.reverse * max(-v[n], _NONE)
             + prices.room * tight * tight
-            + (prices.touch + prices.depth * short if short > 0.0 else 0.0)
+            + (prices.touch + prices.depth * short if short > _NONE else _NONE)
         )
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _charge_moving(cost, x, y, v, disc, prices, highest, size):  # type: ignore[no-untyped-def]  # numba kernel
+def _charge_moving(cost, x, y, v, disc, prices, highest):  # type: ignore[no-untyped-def]  # numba kernel
     """Being touched at rest is not the robot's doing, so haste counts."""
-    for n in range(size):
+    for n in range(BLOCK):
         dx, dy = x[n] - disc[0], y[n] - disc[1]
         spare = np.sqrt(dx * dx + dy * dy) - disc[2]
-        close = min(max(1.0 - spare / disc[3], 0.0), 1.0)
-        touch = prices.touch - prices.depth * spare if spare < 0.0 else 0.0
+        close = min(max(_ALL - spare / disc[3], _NONE), _ALL)
+        touch = prices.touch - prices.depth * spare if spare < _NONE else _NONE
         cost[n] += prices.near * close * close + touch * (_AT_REST + abs(v[n]) / highest)

@@ -11,7 +11,7 @@ from explore_bt_controllers.nearby import Nearby
 from explore_bt_controllers.noise import NoiseBank
 from explore_bt_controllers.options import MppiOptions
 from explore_bt_controllers.proposals import propose
-from explore_bt_controllers.rollout import Bounds, Prices, Route, Start, World, costs_of
+from explore_bt_controllers.rollout import BLOCK, Bounds, Prices, Route, Start, World, costs_of
 from explore_bt_controllers.speed_ahead import SpeedAhead
 from explore_bt_controllers.track import Leg
 from explore_bt_controllers.wish import Wish, next_linear
@@ -22,6 +22,7 @@ _BRAKE_SHARE = 0.5  # of the acceleration, for the speed wanted ahead of slow pl
 _LOYALTY = 0.1  # by which another plan must be cheaper than the one pursued
 _BROKEN_OFF_S = 0.3  # after a pause as long as this the last plan is of no use
 _WAITING_MPS = 0.05
+_STRAIGHTEN_S = 0.5  # in which who waits turns to the path, at most: faster they would turn past it
 _LOOK_M = 1.5  # along the path, for what is tight or in the way
 _SQUEEZE_M = 0.02  # nearer than the path's own clearance: the map's cells are as coarse
 _LEAST_MARGIN_M = -0.03  # the safety gate has the last word
@@ -61,7 +62,10 @@ class SampledLaw:
     def _turn_rate(self, rate_rps: float, linear_mps: float, place: Place) -> float:
         """Who waits for people turns to the path only: else they dance about the robot, and it with them."""
         waits = abs(linear_mps) < _WAITING_MPS and bool(self._nearby.moving)
-        return 0.0 if waits and rate_rps * place.heading_error_rad >= 0.0 else rate_rps
+        if not waits:
+            return rate_rps
+        straight_rps = -place.heading_error_rad / _STRAIGHTEN_S
+        return min(max(rate_rps, min(straight_rps, 0.0)), max(straight_rps, 0.0))
 
     def hindrance(self) -> str:
         """See ``DrivingLaw.hindrance``."""
@@ -85,7 +89,10 @@ class SampledLaw:
         last = self._last_plan(place)
         if last is not None:
             proposals = np.concatenate((proposals, last[:, :, None].astype(np.float32)), axis=2)
-        costs = costs_of(world, np.zeros((2, options.steps)), proposals, 0, 0, proposals.shape[2])
+        count = proposals.shape[2]
+        block = np.zeros((2, 1, options.steps, BLOCK), dtype=np.float32)
+        block[:, 0, :, :count] = proposals
+        costs = costs_of(world, np.zeros((2, options.steps)), block, (0, 0), count)
         if last is not None:
             costs[-1] -= _LOYALTY
         return proposals[:, :, costs.argmin()].astype(np.float64)
@@ -104,13 +111,14 @@ class SampledLaw:
 
     def _improved(self, plan: NDArray[np.float64], world: World) -> NDArray[np.float64]:
         """(2, K): the plan and the weighted mean of the noise around it."""
-        count, bank = self._options.samples, self._noise.sequences
-        windows = self._noise.windows()
-        costs = costs_of(world, plan, bank, *windows, count)
-        weights = np.exp((costs.min() - costs) / self._options.temperature)
-        weights = (weights / weights.sum()).astype(np.float32)
-        means = [bank[row, :, first : first + count] @ weights for row, first in enumerate(windows)]
-        return plan + np.array(means)
+        options, runs = self._options, self._noise.runs()
+        costs = costs_of(world, plan, self._noise.sequences, runs, options.samples)
+        weights = np.exp((costs.min() - costs) / options.temperature)
+        better = plan + self._noise.mean(runs, (weights / weights.sum()).astype(np.float32))
+        bounds = world.bounds  # what is asked beyond them does nothing, and would have to be taken back first
+        better[0] = better[0].clip(bounds.lowest, bounds.highest)
+        better[1] = better[1].clip(-bounds.turn_rate, bounds.turn_rate)
+        return better
 
     def _world(self, place: Place, motion: MotionState, limits: MotionLimits) -> World:
         options = self._options
