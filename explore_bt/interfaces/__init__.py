@@ -8,6 +8,7 @@ from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.exporter import Exporter, RobotProduct
 from explore_bt.interfaces.filming import Filming
 from explore_bt.interfaces.finding import Finding
+from explore_bt.interfaces.graph_share import GraphShare
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.interfaces.planner import Planner, never
 from explore_bt.interfaces.playback import Playback, Recorded
@@ -43,6 +44,7 @@ __all__ = [
     "Exporter",
     "Filming",
     "Finding",
+    "GraphShare",
     "GroundTruth",
     "HeldBy",
     "Letter",
