@@ -16,8 +16,9 @@ _LAST_M2 = 0.1
 class WaitForTeam(Leaf):
     """Waits until the map of all has grown, as one of those who have found nothing to do.
 
-    SUCCESS once there is more to look through; FAILURE once nobody of the team is at work any more and the
-    map is the one that was last looked through. A robot that is alone fails at once.
+    SUCCESS once there is more to look through, or somebody who was at work is silent: what it had claimed is
+    left. FAILURE once nobody of the team is at work any more and the map is the one that was last looked
+    through. A robot that is alone fails at once.
     """
 
     type_key = "wait_for_team"
@@ -32,12 +33,18 @@ class WaitForTeam(Leaf):
         """Remember what has been looked through."""
         self._since_s = self.robot.now_s()
         self._known_m2 = self._area_m2()
+        self._workers = {mate.name for mate in self.robot.team.mates if mate.doing is Doing.AT_WORK}
         self.robot.team.claim(())
         self.robot.team.say_doing(Doing.IDLE)
 
     def update(self) -> Status:
         """Has the map grown, and is anybody at work?"""
         at_work = [mate.name for mate in self.robot.team.mates if mate.doing is Doing.AT_WORK]
+        self._workers.update(at_work)
+        if silent := self._workers - {mate.name for mate in self.robot.team.mates}:
+            self.robot.team.say_doing(Doing.AT_WORK)
+            self.say(f"{', '.join(sorted(silent))} is silent: look again")
+            return Status.SUCCESS
         new_m2 = self._area_m2() - self._known_m2
         waited_s = self.robot.now_s() - self._since_s
         if not at_work:

@@ -20,6 +20,8 @@ class Origin:
         settings: ``name=value`` of every ``--set``; ``folder`` is what relative files in them relate to.
         sha256: ``Mission.sha256``.
         version: of explore-bt, which began the run.
+        robot: the one that the run drives of a fleet; empty for all.
+        pace: simulated seconds a second that robot is held to.
     """
 
     mission: str
@@ -29,6 +31,8 @@ class Origin:
     sha256: str
     seed: int
     version: str
+    robot: str = ""
+    pace: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +68,8 @@ class RobotMemory:
         heard: kind and frame of a measurement -> stamp of the last that SLAM was given, seconds.
         blackboard: key -> value.
         nodes: path of a node of the tree -> what it remembers.
-        parts: name of a part of the robot (``scores``, ``purse``, ``tight places``) -> what it remembers.
+        parts: name of a part of the robot (``scores``, ``purse``, ``tight places``, ``team``) -> what it
+            remembers.
     """
 
     home: Pose2

@@ -17,6 +17,7 @@ from explore_bt.cli.recover import recover
 from explore_bt.cli.replay import replay
 from explore_bt.cli.resume import resume
 from explore_bt.cli.ros2_sim import ros2_sim
+from explore_bt.cli.router import router
 from explore_bt.cli.run import run
 from explore_bt.cli.schema import schema
 from explore_bt.cli.show import show
@@ -83,6 +84,7 @@ app.command(epilog="Example: explore-bt export runs/first --csv tables")(export)
 app.command(epilog="Example: explore-bt stats runs/* --never")(stats)
 app.command(epilog="Example: explore-bt world --kind apartment --seed 3 --out flat.yaml")(world)
 app.command("ros2-sim", epilog="Example: explore-bt ros2-sim 01_apartment --speed 3")(ros2_sim)
+app.command(epilog="Example: explore-bt router --listen tcp/0.0.0.0:7447")(router)
 app.command(epilog="Example: explore-bt schema --out missions/schema.json")(schema)
 app.command(epilog="Example: explore-bt plugins --kind planner --options")(plugins)
 app.command("new-plugin", epilog="Example: explore-bt new-plugin slam my_slam")(new_plugin)

@@ -52,10 +52,11 @@ def resume(
     cut, seed = broken.run, broken.run.memory.origin.seed
     typer.echo(f"{run}: goes on at {duration(cut.stamp_s)}, part {cut.memory.parts + 1}: getting ready")
     sinks = watched_sinks(broken.registry, sink or (), headless=headless)
-    from explore_bt.runtime import StopFlag
+    from explore_bt.runtime import StopFlag, pace_of
 
     stop = StopFlag()
     with run_log(run / "run.log", verbose=verbose, goes_on=True), stopping_by_signal(stop):
-        result = drive(broken.mission, broken.registry, run, seed, sinks, stop, resumed=cut)
+        attendant = pace_of(broken.mission)
+        result = drive(broken.mission, broken.registry, run, seed, sinks, stop, attendant, resumed=cut)
     show_result(result, run)
     raise typer.Exit(exit_code(result.outcome))

@@ -60,7 +60,7 @@ def run(
     if robot is not None:
         from explore_bt.mission import only_robot
 
-        checked = only_robot(checked, robot)
+        checked = only_robot(checked, robot, pace)
     attendants = film_of(checked, video)
     folder = new_run_folder(out, checked.path.stem)
     sinks = watched_sinks(registry, sink or (), headless=headless)
@@ -71,10 +71,9 @@ def run(
         attendants.append(session)
         sinks += groot_sinks(groot, checked, session, groot_host, groot_port)
     typer.echo(f"{checked.path}, seed {seed}: {GETTING_READY}")
-    from explore_bt.runtime import Attendants, Pace, StopFlag
+    from explore_bt.runtime import Attendants, StopFlag, pace_of
 
-    if robot is not None:
-        attendants.append(Pace(pace))
+    attendants.append(pace_of(checked))
     stop = StopFlag()
     with run_log(folder / "run.log", verbose=verbose), stopping_by_signal(stop):
         result = drive(checked, registry, folder, seed, sinks, stop, Attendants(attendants))

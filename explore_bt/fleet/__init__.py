@@ -1,6 +1,7 @@
 """Several robots in one mission: what they tell one another, and the map they have together."""
 
 from explore_bt.fleet.alone import Alone
+from explore_bt.fleet.clocks import Clocks, WordAges
 from explore_bt.fleet.link import TeamLink
 from explore_bt.fleet.messages import MESSAGE_VERSION, MessageError, Presence, Tile, decode, encode
 from explore_bt.fleet.roster import Roster
@@ -11,6 +12,7 @@ __all__ = [
     "MESSAGE_VERSION",
     "TILE_CELLS",
     "Alone",
+    "Clocks",
     "MessageError",
     "Presence",
     "Roster",
@@ -18,6 +20,7 @@ __all__ = [
     "TeamMap",
     "Tile",
     "TileCutter",
+    "WordAges",
     "decode",
     "encode",
     "merged_map",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from explore_bt.fleet.team_map import TeamMap
@@ -60,6 +60,13 @@ class Alone:
 
     def insist(self, until_s: float) -> None:
         """Nobody is in the way."""
+
+    def memory(self) -> Mapping[str, object]:
+        """Nothing was told."""
+        return {}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Nobody has to be told again."""
 
     def sum_up(self) -> None:
         """Nothing was told."""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import cast
 
+from explore_bt.fleet.clocks import Clocks, WordAges
 from explore_bt.fleet.messages import MessageError, Presence, Tile, decode, encode
 from explore_bt.fleet.roster import Roster
 from explore_bt.fleet.team_map import TeamMap
@@ -14,12 +17,16 @@ from explore_bt.types import Doing, Mate, OccupancyGrid
 
 __all__ = ["NEAR_S", "TeamLink"]
 
-NEAR_S = 0.5
+NEAR_S = 2.0
 """Who was heard of so lately is kept clear of by what it told; anybody else as somebody unknown."""
+_CLOCKS_PERIOD_S = 1.0
+_RESUMED_MS = 10_000
+"""A run that goes on may have to begin up to 5 s before where it broke off: its tiles count as newer all the
+same."""
 _TILES_PERIOD_S = 0.5
 _BURST_S = 2.0
 _INSISTS = -1
-PRESENCE, TILE = "presence", "tile"
+PRESENCE, TILE, CLOCKS = "presence", "tile", "clocks"
 
 
 class TeamLink:
@@ -46,7 +53,10 @@ class TeamLink:
         self._team = team
         self._slam = slam
         self._tell = tell
-        self._roster = Roster(shares_clock=team.shares_clock)
+        self._roster = Roster()
+        self._ages = WordAges(name, time.time_ns())  # of two lives of a robot; no decision hangs on it
+        self._compared_s = -_CLOCKS_PERIOD_S
+        self._revision_base = 0
         self._cutter = TileCutter()
         self._map = TeamMap(slam)
         self._queue: dict[tuple[int, int], Tile] = {}
@@ -59,7 +69,7 @@ class TeamLink:
         self._insists_until_s = -1.0
         self._strangers: set[str] = set()
         self._present: frozenset[str] = frozenset()
-        self._sent = {PRESENCE: 0, TILE: 0}
+        self._sent = {PRESENCE: 0, TILE: 0, CLOCKS: 0}
         self._began_s: float | None = None
 
     # --- TeamServices ---------------------------------------------------------------------------------
@@ -96,6 +106,7 @@ class TeamLink:
     def setup(self, context: RobotContext, team_map: TeamMap) -> None:
         """Join; what others see goes into ``team_map``."""
         self._map = team_map
+        self._revision_base = _RESUMED_MS * (context.resumed.part - 1) if context.resumed else 0
         self._team.setup(context)
 
     def receive(self, now_s: float) -> None:
@@ -111,8 +122,10 @@ class TeamLink:
                 continue
             if isinstance(message, Tile):
                 self._map.put(letter.sender, message)
+            elif isinstance(message, Clocks):
+                self._ages.hear(letter.sender, message)
             else:
-                self._roster.take(letter.sender, message, now_s)
+                self._roster.take(letter.sender, message, now_s, self._told_s(letter.sender, message.stamp_s))
         self._tell_of_comings()
 
     def send(self, now_s: float, presence: Callable[[], Presence], grid: OccupancyGrid) -> None:
@@ -130,6 +143,9 @@ class TeamLink:
         self._filled_s = now_s
         told = replace(presence(), claims=self._claims, doing=self._doing, yields=self.yields)
         self._say(PRESENCE, PRESENCE, encode(told))
+        if not self._team.shares_clock and now_s - self._compared_s > _CLOCKS_PERIOD_S - 1e-6:
+            self._compared_s = now_s
+            self._say(CLOCKS, CLOCKS, encode(self._ages.tell()))
         self._cut(grid, now_s)
         while self._queue and self._allowance > 0.0:
             place = next(iter(self._queue))
@@ -141,7 +157,18 @@ class TeamLink:
         parts = (f"{kind} {figures[f'{kind}_bytes_per_s'] / 1000.0:.1f} kB/s" for kind in (PRESENCE, TILE))
         budget = self._team.budget_bytes_per_s / 1000.0
         waiting = f", {len(self._queue)} tiles wait" if self._queue else ""
-        self._tell("info", "team", f"told {', '.join(parts)} of {budget:.0f} kB/s{waiting}")
+        mean_s, most_s = figures["word_age_mean_s"], figures["word_age_most_s"]
+        ages = f"; words came {mean_s:.2f} s old, {most_s:.2f} s at most" if most_s else ""
+        self._tell("info", "team", f"told {', '.join(parts)} of {budget:.0f} kB/s{waiting}{ages}")
+
+    def memory(self) -> Mapping[str, object]:
+        """What the robot has told about its work."""
+        return {"claims": self._claims, "doing": str(self._doing)}
+
+    def restore(self, memory: Mapping[str, object]) -> None:
+        """Tell it again."""
+        self._claims = cast("tuple[tuple[float, float], ...]", memory["claims"])
+        self._doing = Doing(str(memory["doing"]))
 
     def close(self) -> None:
         """Leave."""
@@ -151,9 +178,15 @@ class TeamLink:
         """Bytes per second of mission time, by what they were for; and what the plugin counts itself."""
         span_s = max(self._now_s - (self._began_s or 0.0), 1.0)
         own = {f"{kind}_bytes_per_s": count / span_s for kind, count in self._sent.items()}
-        return {**own, **self._team.figures()}
+        return {**own, **self._ages.figures(), **self._team.figures()}
 
     # --- inside -----------------------------------------------------------------------------------------
+
+    def _told_s(self, sender: str, stamp_s: float) -> float:
+        """When what is heard now was told, on the robot's own clock, at the earliest."""
+        if self._team.shares_clock:
+            return stamp_s
+        return self._now_s - self._ages.bound_s(sender, stamp_s, self._now_s)
 
     def _say(self, kind: str, topic: str, payload: bytes) -> None:
         self._team.say(topic, payload)
@@ -165,7 +198,7 @@ class TeamLink:
         if now_s - self._cut_s < _TILES_PERIOD_S - 1e-6 or grid.revision == self._cut_revision:
             return
         window = None if self._cut_revision < 0 else self._slam.changed_since(self._cut_revision)
-        for tile in self._cutter.changed(grid, window, round(1000 * now_s)):
+        for tile in self._cutter.changed(grid, window, round(1000 * now_s) + self._revision_base):
             self._queue[tile.place] = tile
         self._cut_s, self._cut_revision = now_s, grid.revision
 

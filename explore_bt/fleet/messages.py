@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.errors import ExploreError
+from explore_bt.fleet.clocks import Clocks, clocks_from, clocks_to_bytes
 from explore_bt.types import Doing, Pose2, Twist2
 
 __all__ = ["MESSAGE_VERSION", "MessageError", "Presence", "Tile", "decode", "encode"]
@@ -21,7 +22,7 @@ MESSAGE_VERSION = 1
 _HEAD = struct.Struct("<BB")
 _PRESENCE = struct.Struct("<dd3d2fff2BhHHH")
 _TILE = struct.Struct("<Qfii")
-_IS_PRESENCE, _IS_TILE = 1, 2
+_IS_PRESENCE, _IS_TILE, _IS_CLOCKS = 1, 2, 3
 _STEP_M = 0.005
 """Places near the robot are told to half a centimetre, from it."""
 _CLAIM_STEP_M = 0.001
@@ -70,14 +71,16 @@ class Tile:
     cells: NDArray[np.int8]
 
 
-def encode(message: Presence | Tile) -> bytes:
+def encode(message: Presence | Tile | Clocks) -> bytes:
     """The bytes; little endian, lengths first."""
     if isinstance(message, Tile):
         return _HEAD.pack(MESSAGE_VERSION, _IS_TILE) + _tile_bytes(message)
+    if isinstance(message, Clocks):
+        return _HEAD.pack(MESSAGE_VERSION, _IS_CLOCKS) + clocks_to_bytes(message)
     return _HEAD.pack(MESSAGE_VERSION, _IS_PRESENCE) + _presence_bytes(message)
 
 
-def decode(payload: bytes) -> Presence | Tile:
+def decode(payload: bytes) -> Presence | Tile | Clocks:
     """The message.
 
     Raises:
@@ -94,6 +97,8 @@ def decode(payload: bytes) -> Presence | Tile:
             return _presence(body)
         if kind == _IS_TILE:
             return _tile(body)
+        if kind == _IS_CLOCKS:
+            return clocks_from(body)
         raise ValueError("there is no such kind")
     except (struct.error, zlib.error, ValueError, IndexError) as fault:
         raise MessageError(f"a message of kind {kind} is cut off or damaged: {fault}") from None

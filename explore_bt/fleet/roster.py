@@ -9,31 +9,29 @@ __all__ = ["PRESENT_S", "Roster"]
 
 PRESENT_S = 5.0
 """A robot that has been silent for so long is no mate: its claims are free. It may come back."""
-_DELAY_S = 0.25
-"""Where clocks are not compared nobody knows how long a word was under way."""
 
 
 class Roster:
-    """What the others last told, on the listener's clock.
+    """What the others last told, on the listener's clock."""
 
-    Args:
-        shares_clock: see ``Team.shares_clock``; else a message counts as so old when it is heard as a usual
-            network makes it.
-    """
-
-    def __init__(self, *, shares_clock: bool) -> None:
-        self._shares_clock = shares_clock
+    def __init__(self) -> None:
         self._told: dict[str, Presence] = {}
         self._mates: dict[str, Mate] = {}
 
-    def take(self, sender: str, told: Presence, now_s: float) -> bool:
-        """Note what a mate tells; whether it is news. After a restart its clock may begin anew."""
+    def take(self, sender: str, told: Presence, now_s: float, stamp_s: float) -> bool:
+        """Note what a mate tells; whether it is news. After a restart its clock may begin anew.
+
+        Args:
+            sender: the mate.
+            told: with times on its clock.
+            now_s: on the listener's.
+            stamp_s: on the listener's too, it was told then or later.
+        """
         before = self._told.get(sender)
         is_known = sender in self._mates and now_s - self._mates[sender].stamp_s < PRESENT_S
         if before is not None and is_known and told.stamp_s <= before.stamp_s:
             return False
         self._told[sender] = told
-        stamp_s = told.stamp_s if self._shares_clock else now_s - _DELAY_S
         self._mates[sender] = Mate(
             sender,
             stamp_s,

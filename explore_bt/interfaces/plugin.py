@@ -56,11 +56,13 @@ class Resumption:
         stamp_s: the mission time at which it goes on; clocks show it at set-up, stamps count from there.
         pose: where the robot was last believed to be, ``map`` frame.
         true_pose: where the simulator last had it; None on hardware. It stands there now.
+        part: how many processes have worked on the run, this one included.
     """
 
     stamp_s: float
     pose: Pose2
     true_pose: Pose2 | None = None
+    part: int = 2
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import ClassVar
 
+from explore_bt.errors import PluginError
 from explore_bt.interfaces.plugin import Plugin, RobotContext
 
 __all__ = ["Letter", "Team"]
@@ -65,3 +67,15 @@ class Team(Plugin):
     def figures(self) -> Mapping[str, float]:
         """Numbers for the report; none unless overridden."""
         return {}
+
+    @classmethod
+    def router(cls, listen: Sequence[str]) -> AbstractContextManager[None]:  # noqa: ARG003  # for those that have one
+        """While inside, this process passes on what robots say that do not reach one another.
+
+        Args:
+            listen: where they come to, as the plugin writes endpoints.
+
+        Raises:
+            PluginError: its robots need nobody between them, or an endpoint cannot be had.
+        """
+        raise PluginError(f"team {cls.name} has no router: its robots reach one another without")

@@ -8,7 +8,7 @@ from explore_bt.mission.draw_text import show_text
 from explore_bt.mission.limits import LimitsSpec
 from explore_bt.mission.load import load_mission, load_tree
 from explore_bt.mission.mocks import with_mocks
-from explore_bt.mission.model import Mission, PluginChoice, RobotSpec
+from explore_bt.mission.model import Mission, PluginChoice, RobotSpec, Solo
 from explore_bt.mission.nodes import CONTROL_NODES, MODIFIERS, Condition, Modifiers, NodeSpec
 from explore_bt.mission.one_robot import only_robot
 from explore_bt.mission.schema import mission_schema
@@ -29,6 +29,7 @@ __all__ = [
     "PluginCatalog",
     "PluginChoice",
     "RobotSpec",
+    "Solo",
     "build_tree",
     "load_mission",
     "load_tree",

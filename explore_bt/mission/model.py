@@ -13,7 +13,7 @@ from explore_bt.mission.nodes import NodeSpec
 from explore_bt.mission.params import Param
 from explore_bt.types import Pose2
 
-__all__ = ["Mission", "PluginChoice", "RobotSpec", "TeamSpec"]
+__all__ = ["Mission", "PluginChoice", "RobotSpec", "Solo", "TeamSpec"]
 
 P = TypeVar("P", bound=Plugin)
 
@@ -61,6 +61,14 @@ class TeamSpec:
 
 
 @dataclass(frozen=True, slots=True)
+class Solo:
+    """One robot of a fleet, in a process of its own; ``pace``: simulated seconds a second."""
+
+    robot: str
+    pace: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
 class Mission:
     """What a mission file says, checked.
 
@@ -76,6 +84,7 @@ class Mission:
         settings: the overrides, ``name=value``; relative files in them are relative to ``settings_folder``.
         control_rate_hz: a whole multiple of ``tree_rate_hz``.
         team: None for a robot that is alone.
+        solo: the one robot of it that this process drives; None for all.
     """
 
     name: str
@@ -95,3 +104,4 @@ class Mission:
     settings: tuple[str, ...] = ()
     settings_folder: Path = Path()
     team: TeamSpec | None = None
+    solo: Solo | None = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from explore_bt.errors import UserError
-from explore_bt.mission.model import Mission
+from explore_bt.mission.model import Mission, Solo
 from explore_bt.mission.words import did_you_mean
 
 __all__ = ["only_robot"]
@@ -13,8 +13,13 @@ __all__ = ["only_robot"]
 _IN_PROCESS = "local"
 
 
-def only_robot(mission: Mission, name: str) -> Mission:
+def only_robot(mission: Mission, name: str, pace: float = 1.0) -> Mission:
     """The mission as that robot's process drives it; the others are heard of through the team.
+
+    Args:
+        mission: of all.
+        name: the robot's.
+        pace: simulated seconds a second.
 
     Raises:
         UserError: no such robot, a team that ends with the process, robots whose starts nobody has given.
@@ -33,4 +38,5 @@ def only_robot(mission: Mission, name: str) -> Mission:
             f"{mission.path}: nobody knows where {', '.join(lost)} begins; robots in processes of their own "
             "need a start each, in one frame: start: [1 m, 2 m, 0 deg]"
         )
-    return replace(mission, robots=tuple(robot for robot in mission.robots if robot.name == name))
+    robots = tuple(robot for robot in mission.robots if robot.name == name)
+    return replace(mission, robots=robots, solo=Solo(name, pace))

@@ -22,7 +22,7 @@ from explore_bt.checkpoint import (
 from explore_bt.errors import MissionError, UserError
 from explore_bt.files import RECORDING
 from explore_bt.interfaces import Resumption
-from explore_bt.mission import Mission, load_mission
+from explore_bt.mission import Mission, load_mission, only_robot
 from explore_bt.plugin import Registry, load_plugins
 from explore_bt.recording import Recording, RecordingError, read_recording
 from explore_bt.recovery.moments import moments_of
@@ -169,6 +169,8 @@ def _mission(memory: RunMemory, settings: Sequence[str]) -> tuple[Mission, Regis
         notes.append("it goes on with other parameters than it began with")
     if origin.version != __version__:
         notes.append(f"it was begun by explore-bt {origin.version}, this is {__version__}")
+    if origin.robot:
+        mission = only_robot(mission, origin.robot, origin.pace)
     return mission, registry, notes
 
 
@@ -232,7 +234,9 @@ def _cut(
     if run.outcome == Outcome.BUDGET:
         parts["purse"] = _NOTHING_LEARNT  # the battery may be another one
     return Cut(
-        resumption=Resumption(stamp_s, tail.pose or memory.pose, tail.true_pose or memory.true_pose),
+        resumption=Resumption(
+            stamp_s, tail.pose or memory.pose, tail.true_pose or memory.true_pose, run.parts + 1
+        ),
         memory=replace(memory, blackboard=board, parts=parts),
         slam_folder=checkpoint.folder / slam_folder(name),
         measured=tail.measured,

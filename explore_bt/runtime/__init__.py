@@ -6,7 +6,7 @@ from explore_bt.runtime.exports import export
 from explore_bt.runtime.kept_values import RUN_FILE, codec_for, robot_file, run_codec, slam_folder
 from explore_bt.runtime.mapping import HealthChange, Mapping, map_log
 from explore_bt.runtime.mission_run import ENDING_KEYS, run_mission
-from explore_bt.runtime.pace import Pace
+from explore_bt.runtime.pace import Pace, pace_of
 from explore_bt.runtime.resumption import Cut, CutRun
 from explore_bt.runtime.robot import Robot
 from explore_bt.runtime.robot_keeping import sort_of
@@ -31,6 +31,7 @@ __all__ = [
     "codec_for",
     "export",
     "map_log",
+    "pace_of",
     "robot_file",
     "run_codec",
     "run_mission",

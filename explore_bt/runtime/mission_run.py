@@ -25,7 +25,7 @@ from explore_bt.runtime.robot import OVER_BUDGET_KEY, REASON_KEY, Robot
 from explore_bt.runtime.run_checkpoints import CHECKPOINTS, RunCheckpoints
 from explore_bt.runtime.runner import Runner
 from explore_bt.runtime.stop_flag import StopFlag
-from explore_bt.types import Result
+from explore_bt.types import OccupancyGrid, Result
 from explore_bt.version import __version__
 
 __all__ = ["ENDING_KEYS", "run_mission"]
@@ -137,7 +137,7 @@ def _run(
     finally:  # nothing mapped is lost, even if the run breaks down inside
         result = _result(mission, robots, runner, run.seed, run.wall_time_s)
         checkpoints.close(runner)
-        _export(registry, robots, result, out)
+        _export(registry, mission, robots, result, out)
         observers.close(result)
         write_whole(out / RESULT, json.dumps(result.as_dict(), indent=2) + "\n")
     checkpoints.clear(result.outcome)
@@ -215,13 +215,14 @@ def _sum_of_known(counts: Iterable[int | None]) -> int | None:
     return sum(known) if known else None
 
 
-def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Path) -> None:
-    """Every exporter for every robot; one robot writes into the folder itself, several into their own.
+def _export(registry: Registry, mission: Mission, robots: Sequence[Robot], result: Result, out: Path) -> None:
+    """Every exporter for every robot: alone into the folder itself, those of a fleet into their own.
 
-    The map of all lies in the folder itself.
+    The map of all lies in the folder itself; of a robot in a process of its own, as far as it has heard.
     """
+    is_fleet = len(robots) > 1 or mission.solo is not None
     for robot in robots:
-        folder = out if len(robots) == 1 else out / robot.name
+        folder = out / robot.name if is_fleet else out
         folder.mkdir(exist_ok=True)
         product = RobotProduct(
             robot.name,
@@ -232,5 +233,9 @@ def _export(registry: Registry, robots: Sequence[Robot], result: Result, out: Pa
             robot.slam.structure(),
         )
         export(registry, product, robot.slam, folder)
-    if len(robots) > 1:
-        write_map(merged_map([robot.slam for robot in robots]), out)
+    if is_fleet:
+        write_map(_map_of_all(robots), out)
+
+
+def _map_of_all(robots: Sequence[Robot]) -> OccupancyGrid:
+    return merged_map([robot.slam for robot in robots]) if len(robots) > 1 else robots[0].team_map.grid()

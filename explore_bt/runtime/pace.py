@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from explore_bt.clock import WallClock
+from explore_bt.mission import Mission
 from explore_bt.runtime.attendant import Attendant
 
 if TYPE_CHECKING:
     from explore_bt.runtime.runner import Runner
 
-__all__ = ["Pace"]
+__all__ = ["Pace", "pace_of"]
 
 
 class Pace(Attendant):
@@ -35,3 +36,8 @@ class Pace(Attendant):
         """Let the others come up."""
         if self._runner is not None and self._runner.is_simulated:
             self._clock.wait_until((self._runner.now_s - self._begin_s) / self._rate)
+
+
+def pace_of(mission: Mission) -> Attendant:
+    """Who holds a robot in a process of its own to real time; robots of one process need nobody."""
+    return Attendant() if mission.solo is None else Pace(mission.solo.pace)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from explore_bt.checkpoint import RobotMemory
 from explore_bt.errors import ComponentFailure, PlanningFailure, UserError
 from explore_bt.exploration import warm_up
-from explore_bt.fleet import Presence, TeamMap
+from explore_bt.fleet import TeamMap
 from explore_bt.interfaces import Commons, Event, MapMemory, MapView, RobotContext, RobotSnapshot
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
@@ -26,7 +26,7 @@ from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.team_mate import first_path, grids_to_try, standing
-from explore_bt.runtime.team_place import team_place
+from explore_bt.runtime.team_place import presence_of, team_place
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.runtime.upright import Upright
@@ -142,6 +142,7 @@ class Robot:
             "scores": self.scores,
             "purse": self._purse,
             "tight places": self._tight,
+            "team": self.team,
         }
         self._keeping = RobotKeeping(self.tree, self.blackboard, parts)
         if cut is not None:
@@ -384,20 +385,8 @@ class Robot:
         self.pilot.mates = self._senses.mates = self.team.near
 
     def _tell_team(self, now_s: float, dt_s: float) -> None:
-        self.team.send(now_s, lambda: self._presence(now_s, dt_s), self.slam.grid())
-
-    def _presence(self, now_s: float, dt_s: float) -> Presence:
-        here = self.pilot.predict(self.estimate(), now_s).T_map_base
-        return Presence(
-            now_s,
-            now_s + dt_s,
-            here,
-            self.pilot.motion.twist,
-            self.footprint_radius_m,
-            self._limits.speed_mps,
-            stop=self.pilot.stop_places(here, dt_s),
-            ahead=self.pilot.places_ahead(here),
-        )
+        about = (self.footprint_radius_m, self._limits.speed_mps, now_s, dt_s)
+        self.team.send(now_s, lambda: presence_of(self.pilot, self.estimate(), *about), self.slam.grid())
 
     def _read(self) -> Sequence[Measurement]:
         try:

@@ -67,7 +67,8 @@ class RobotKeeping:
     def restore(self, memory: RobotMemory) -> None:
         """Go on from there."""
         for name, part in self._parts.items():
-            part.restore(memory.parts[name])
+            if name in memory.parts:  # a checkpoint of an earlier version knows fewer
+                part.restore(memory.parts[name])
         for key, value in memory.blackboard.items():
             self._blackboard.write(key, value)
         restore_tree(self._nodes, memory.nodes)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from explore_bt.checkpoint import CheckpointStore, Origin, RunMemory
 from explore_bt.interfaces import Event
-from explore_bt.mission import Mission
+from explore_bt.mission import Mission, Solo
 from explore_bt.runtime.checkpoint_keeper import CheckpointKeeper
 from explore_bt.runtime.resumption import CutRun
 from explore_bt.runtime.robot import Robot
@@ -85,6 +85,7 @@ class RunCheckpoints:
 
 
 def _origin(mission: Mission, seed: int) -> Origin:
+    solo = mission.solo or Solo("")
     return Origin(
         mission=os.path.realpath(mission.path),
         files={str(path): text for path, text in mission.texts.items()},
@@ -93,4 +94,6 @@ def _origin(mission: Mission, seed: int) -> Origin:
         sha256=mission.sha256,
         seed=seed,
         version=__version__,
+        robot=solo.robot,
+        pace=solo.pace,
     )

@@ -96,6 +96,9 @@ class Runner:
 
     def run(self) -> None:
         """Until everything stands still; ``outcome`` and ``reason`` then tell why."""
+        for robot in self.robots:
+            if robot.name in self.ended:
+                robot.team.say_doing(Doing.OVER)
         self._attendant.begin(self)
         self._begin_s = max(self._begin_s, *(robot.driver.clock.now_s() for robot in self.robots))
         while self._phase is not _Phase.OVER:

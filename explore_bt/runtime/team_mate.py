@@ -16,6 +16,8 @@ __all__ = ["fault_by_mates", "first_path", "grids_to_try", "standing", "with_mat
 
 _OFF_M = 0.15
 """A return so near to a mate's disc is its own: poses, a sweep's motion and noise are off by less."""
+_SURE_S = 0.5
+"""Where a mate is by an older word nobody knows so well: its returns stay in the scan, as a stranger's."""
 _MARGIN_M = 0.05
 _GROWTH = 2.0
 """How fast the place where a mate may stop grows when its word is old, in its speed limit: it drives on, and
@@ -62,8 +64,9 @@ def without_mates(scan: Scan2D, pose: Pose2, mates: Sequence[Mate]) -> Scan2D:
     Args:
         scan: as measured.
         pose: of the robot at its stamp, ``map`` frame.
-        mates: whose word is fresh.
+        mates: who was heard of lately.
     """
+    mates = [mate for mate in mates if scan.stamp_s - mate.stamp_s < _SURE_S]
     if not mates:
         return scan
     bearings = scan.angles_rad + pose.yaw_rad

@@ -1,14 +1,16 @@
-"""A robot's place in the team of its mission."""
+"""A robot's place in the team of its mission, and what it tells there of itself."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from explore_bt.fleet import Alone, TeamLink
+from explore_bt.fleet import Alone, Presence, TeamLink
 from explore_bt.interfaces import Slam
 from explore_bt.mission import Mission
+from explore_bt.runtime.pilot import Pilot
+from explore_bt.types import Estimate
 
-__all__ = ["team_place"]
+__all__ = ["presence_of", "team_place"]
 
 
 def team_place(
@@ -18,3 +20,21 @@ def team_place(
     if mission.team is None:
         return Alone(robot)
     return TeamLink(robot, mission.team.team.make(), mission.team.allocator.make(), slam, tell)
+
+
+def presence_of(
+    pilot: Pilot, estimate: Estimate, radius_m: float, speed_mps: float, now_s: float, dt_s: float
+) -> Presence:
+    """Where the robot is, where it passes if it brakes now, and where its path leads.
+
+    Args:
+        pilot: knows how it moves.
+        estimate: the newest.
+        radius_m: of its footprint.
+        speed_mps: its limit.
+        now_s: the time.
+        dt_s: until its next word.
+    """
+    here = pilot.predict(estimate, now_s).T_map_base
+    stop, ahead = pilot.stop_places(here, dt_s), pilot.places_ahead(here)
+    return Presence(now_s, now_s + dt_s, here, pilot.motion.twist, radius_m, speed_mps, stop, ahead)

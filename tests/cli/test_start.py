@@ -24,6 +24,7 @@ COMMANDS = (
     "stats",
     "world",
     "ros2-sim",
+    "router",
     "schema",
     "plugins",
     "new-plugin",

@@ -1,5 +1,7 @@
 """A robot's end of the team, over a board in this process."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from explore_bt.interfaces import (
     Commons,
     Letter,
     PluginOptions,
+    Resumption,
     RobotContext,
     Slam,
     Team,
@@ -24,11 +27,13 @@ class Board(Team):
 
     name = "board"
     api_version = API_VERSION
-    shares_clock = True
     budget_bytes_per_s = 20_000.0
 
-    def __init__(self, said: list[Letter], budget_bytes_per_s: float = 20_000.0) -> None:
+    def __init__(
+        self, said: list[Letter], budget_bytes_per_s: float = 20_000.0, *, shares_clock: bool = True
+    ) -> None:
         super().__init__(PluginOptions())
+        self.shares_clock = shares_clock  # type: ignore[misc]  # of the class in the contract
         self.said, self.robot, self.read = said, "", 0
         self.budget_bytes_per_s = budget_bytes_per_s  # type: ignore[misc]  # a property in the contract
 
@@ -64,16 +69,23 @@ class Member:
     """A link with all that it says and hears."""
 
     def __init__(
-        self, name: str, said: list[Letter], slam: Drawn | None = None, budget: float = 20_000.0
+        self,
+        name: str,
+        said: list[Letter],
+        slam: Drawn | None = None,
+        budget: float = 20_000.0,
+        *,
+        shares_clock: bool = True,
+        resumed: Resumption | None = None,
     ) -> None:
         self.slam, self.told = slam or Drawn(2), []
         self.map = TeamMap(self.slam)
         slam_as_plugin: Slam = self.slam  # type: ignore[assignment]  # only its map is asked for
-        team = Board(said, budget)
+        team = Board(said, budget, shares_clock=shares_clock)
         self.link = TeamLink(
             name, team, Alone().allocator, slam_as_plugin, lambda *event: self.told.append(event)
         )
-        self.link.setup(RobotContext(robot=name, commons=Commons()), self.map)
+        self.link.setup(RobotContext(robot=name, commons=Commons(), resumed=resumed), self.map)
 
     def speak(self, now_s: float, xy: tuple[float, float] = (0.0, 0.0)) -> None:
         pose = Pose2(*xy, 0.0)
@@ -110,7 +122,7 @@ def test_who_is_silent_is_first_not_driven_by_and_then_gone_with_its_claims(said
     ada.speak(1.0)
     bob.link.receive(1.1)
     assert bob.link.near
-    bob.link.receive(1.6)
+    bob.link.receive(3.1)
     assert not bob.link.near
     assert bob.link.mates, "its claims stand for a while"
     bob.link.receive(6.1)
@@ -164,3 +176,42 @@ def test_the_usual_team_and_allocator_are_installed() -> None:
     registry = load_plugins().registry
     assert {"local"} <= set(registry.names("team"))
     assert {"auction", "greedy", "independent"} <= set(registry.names("allocator"))
+
+
+def test_without_a_common_clock_a_word_counts_as_old_as_the_way_there_and_back(said: list[Letter]) -> None:
+    """Bob's clock is 100 s ahead; each hears the other 0.2 s and 0.1 s late."""
+    ada, bob = (Member(name, said, shares_clock=False) for name in ("ada", "bob"))
+    for step in range(60):
+        now_s = 0.1 * step
+        ada.speak(now_s)
+        bob.link.receive(now_s + 100.2)
+        bob.speak(now_s + 100.2)
+        ada.link.receive(now_s + 0.3)
+        if step == 0:
+            assert bob.link.mates[0].stamp_s == pytest.approx(100.2 - 1.0), "nothing is measured yet"
+    assert ada.link.mates[0].stamp_s == pytest.approx(now_s)
+    assert bob.link.mates[0].stamp_s == pytest.approx(now_s + 99.9)
+    assert bob.link.figures()["word_age_mean_s"] == pytest.approx(0.3)
+
+
+def test_a_resumed_robot_replaces_the_tiles_it_told_before_its_clock_was_set_back(said: list[Letter]) -> None:
+    """It was killed at 20 s and goes on at 16 s; in between a wall was drawn that is none."""
+    ada, bob = Member("ada", said, Drawn(64)), Member("bob", said)
+    ada.speak(20.0)
+    goes_on = Resumption(16.0, Pose2.identity(), part=2)
+    again = Member("ada", said, Drawn(64), resumed=goes_on)
+    again.slam.map = replace(again.slam.map, cells=np.zeros_like(again.slam.cells))
+    for step in range(100):
+        again.speak(16.0 + 0.05 * step)
+    bob.link.receive(21.0)
+    assert (bob.map.grid().cells[:64, :64] <= FREE).all()
+
+
+def test_a_resumed_robot_tells_again_what_it_had_claimed(said: list[Letter]) -> None:
+    ada, again, bob = Member("ada", said), Member("ada", said), Member("bob", said)
+    ada.link.claim([(1.0, 2.0)])
+    ada.link.say_doing(Doing.IDLE)
+    again.link.restore(ada.link.memory())
+    again.speak(3.0)
+    bob.link.receive(3.0)
+    assert (bob.link.mates[0].claims, bob.link.mates[0].doing) == (((1.0, 2.0),), Doing.IDLE)

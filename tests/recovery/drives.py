@@ -36,7 +36,7 @@ class CutAt(Sink):
 
 
 def drive(
-    mission: Path,
+    mission: Path | Mission,
     out: Path,
     *settings: str,
     cut: CutAt | None = None,
@@ -44,8 +44,10 @@ def drive(
     seed: int = 2,
 ) -> Result:
     """A run from its beginning; ``cut`` copies its folder on the way, ``stop_at`` presses Ctrl-C."""
-    registry = load_plugins(inline_dir=mission.parent).registry
-    return _run(load_mission(mission, registry, settings), out, None, cut, stop_at, seed)
+    if isinstance(mission, Path):
+        registry = load_plugins(inline_dir=mission.parent).registry
+        mission = load_mission(mission, registry, settings)
+    return _run(mission, out, None, cut, stop_at, seed)
 
 
 def resume(out: Path, *settings: str, cut: CutAt | None = None, stop_at: float = 0.0) -> Result:

@@ -3,13 +3,15 @@
 import itertools
 import random
 import socket
+from contextlib import ExitStack
 
 import pytest
-from explore_bt_teams import ZenohOptions, ZenohTeam
+from explore_bt_teams import LocalTeam, ZenohOptions, ZenohTeam
 from explore_bt_teams.inbox import Inbox
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from explore_bt.clock import WallClock
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import Commons, Letter, RobotContext, Team
 from explore_bt.testing import TeamContract
@@ -40,6 +42,45 @@ class TestZenohTeam(TeamContract):
         return ZenohTeam(options)
 
 
+def heard(team: ZenohTeam, patience_s: float = 20.0) -> list[Letter]:
+    """The first news."""
+    clock = WallClock()
+    while clock.now_s() < patience_s:
+        if letters := list(team.hear()):
+            return letters
+        clock.wait_until(clock.now_s() + 0.02)
+    return []
+
+
+def test_clients_hear_one_another_through_a_router_and_again_once_it_has_come_back() -> None:
+    """What was said while there was none is not lost: the newest of every topic counts."""
+    endpoint, commons = f"tcp/127.0.0.1:{free_port()}", Commons()
+    options = ZenohOptions(fleet=f"fleet{next(FLEETS)}", mode="client", connect=(endpoint,), multicast=False)
+    ada, bob = ZenohTeam(options), ZenohTeam(options)
+    with ExitStack() as ending:
+        for team in (ada, bob):
+            ending.callback(team.close)
+        with ZenohTeam.router([endpoint]):
+            ada.setup(RobotContext(robot="ada", commons=commons))
+            bob.setup(RobotContext(robot="bob", commons=commons))
+            ada.say("presence", b"here")
+            assert heard(bob) == [Letter("ada", "presence", b"here")]
+        ada.say("tile/0/0", b"said to nobody")
+        with ZenohTeam.router([endpoint]):
+            found: dict[str, bytes] = {}
+            clock = WallClock()
+            while len(found) < 2 and clock.now_s() < 30.0:
+                ada.say("presence", b"still here")
+                found |= {letter.topic: letter.payload for letter in bob.hear()}
+                clock.wait_until(clock.now_s() + 0.1)
+    assert found == {"presence": b"still here", "tile/0/0": b"said to nobody"}
+
+
+def test_a_team_of_one_process_has_no_router() -> None:
+    with pytest.raises(PluginError, match="team local has no router"):
+        LocalTeam.router([])
+
+
 def test_an_endpoint_that_cannot_be_had_is_named() -> None:
     team = ZenohTeam(ZenohOptions(listen=("tcp/192.0.2.1:1",), multicast=False))
     with pytest.raises(PluginError, match=r"team zenoh: no session: .* Check connect, listen and multicast"):
@@ -51,7 +92,7 @@ def test_an_endpoint_that_cannot_be_had_is_named() -> None:
 def test_whatever_is_dropped_delayed_or_repeated_the_newest_of_all_topics_comes_in_the_end(
     seed: int, lost: float, cut: int
 ) -> None:
-    """Also the answers are lost for a while; then the network is well again."""
+    """Also the answers, whole or in part, are lost for a while; then the network is well again."""
     chance = random.Random(seed)
     inbox, said, heard = Inbox(), {}, {}
     under_way: list[tuple[str, int]] = []
@@ -74,10 +115,11 @@ def test_whatever_is_dropped_delayed_or_repeated_the_newest_of_all_topics_comes_
         for name, since in inbox.missing(float(step)):
             assert name == "a"
             if is_well or chance.random() > lost:
-                for asked, number in said.items():
-                    if number > since:
+                told = {number: asked for asked, number in said.items() if number > since}
+                for number, asked in told.items():
+                    if is_well or chance.random() > lost:
                         deliver(asked, number)
-                inbox.answered("a", 1, step)
+                inbox.answered("a", 1, step, told)
         for letter in inbox.drain():
             number = int(letter.payload)
             assert number > heard.get(letter.topic, 0), "nothing twice, nothing late"

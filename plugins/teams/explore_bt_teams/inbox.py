@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from explore_bt.interfaces import Letter
@@ -62,11 +62,20 @@ class Inbox:
                 self._fresh.pop(key, None)  # to the end
                 self._fresh[key] = letter
 
-    def answered(self, name: str, life: int, number: int) -> None:
-        """A robot that was asked has told the newest of all its topics, up to its ``number``-th word."""
+    def answered(self, name: str, life: int, number: int, told: Collection[int]) -> None:
+        """A robot that was asked has told the newest of all its topics, up to its ``number``-th word.
+
+        Args:
+            name: the robot's.
+            life: of the robot.
+            number: of its newest word then.
+            told: numbers of the words that it answered with; some may have been lost.
+        """
         with self._lock:
             sender = self._senders.get(name)
             if sender is None or sender.life != life or number <= sender.whole:
+                return
+            if any(each > sender.whole and each not in sender.later for each in told):
                 return
             sender.whole = number
             sender.later = {later for later in sender.later if later > number}

@@ -6,21 +6,24 @@ import struct
 import threading
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, closing
 from typing import Any, ClassVar
 
+import numpy as np
 from pydantic import Field
 
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import API_VERSION, Letter, PluginOptions, RobotContext, Team
 from explore_bt_teams.inbox import Inbox
 from explore_bt_teams.options import TeamOptions
+from explore_bt_teams.zenoh_session import imported, opened
 
 __all__ = ["ZenohOptions", "ZenohTeam"]
 
 _HEAD = struct.Struct("<QQ")
 """Life of the speaker (when it joined, nanoseconds), and the number of the word in that life."""
 _WHOLE = "whole"
-"""Ends an answer: that was all up to this number."""
+"""Ends an answer: these were the numbers of its words, and that was all up to its own."""
 _NAME_TIMEOUT_S = 1.0
 _ASK_TIMEOUT_S = 5.0
 
@@ -38,8 +41,8 @@ class ZenohTeam(Team):
     """Peers that find one another, or clients of a router.
 
     Words are put and may be dropped. Each bears its number; whoever hears a gap asks that robot for all it
-    has said since, which is the newest of each topic. So do late joiners, and both sides of a partition that
-    has healed.
+    has said since, which is the newest of each topic, until nothing of an answer is missing. So do late
+    joiners, and both sides of a partition that has healed.
     """
 
     name = "zenoh"
@@ -64,10 +67,16 @@ class ZenohTeam(Team):
         Raises:
             PluginError: zenoh is not installed, an endpoint cannot be had, or the name is taken.
         """
-        self._zenoh = _imported()
+        self._zenoh = imported()
         self._robot, self._prefix = context.robot, f"explore-bt/{self._settings.fleet}"
         self._life = time.time_ns()  # of two lives of a robot the later one counts; no decision hangs on it
-        session = self._opened()
+        settings = self._settings
+        session = opened(
+            settings.mode,
+            listen=settings.listen,
+            connect=settings.connect,
+            multicast=settings.multicast,
+        )
         try:
             self._refuse_twin(session)
             session.declare_queryable(f"{self._prefix}/{self._robot}/**", self._answer)
@@ -117,27 +126,16 @@ class ZenohTeam(Team):
         """Words that came, gaps that were asked for, words that could not be put."""
         return self._inbox.figures()
 
+    @classmethod
+    def router(cls, listen: Sequence[str]) -> AbstractContextManager[None]:
+        """Robots with ``mode: client`` or ``connect`` go to it."""
+        return closing(opened("router", listen=listen))
+
     # --- inside; what zenoh calls comes on its own threads ----------------------------------------------
 
     @property
     def _all(self) -> Any:
         return self._zenoh.QueryTarget.ALL
-
-    def _opened(self) -> Any:
-        settings, config = self._settings, self._zenoh.Config()
-        config.insert_json5("mode", f'"{settings.mode}"')
-        config.insert_json5("scouting/multicast/enabled", "true" if settings.multicast else "false")
-        for key, endpoints in (("connect", settings.connect), ("listen", settings.listen)):
-            if endpoints:
-                listed = ", ".join(f'"{endpoint}"' for endpoint in endpoints)
-                config.insert_json5(f"{key}/endpoints", f"[{listed}]")
-        try:
-            return self._zenoh.open(config)
-        except self._zenoh.ZError as refusal:
-            raise PluginError(
-                f"team zenoh: no session: {refusal}. Check connect, listen and multicast, and that a router "
-                "runs if mode is client"
-            ) from None
 
     def _refuse_twin(self, session: Any) -> None:
         for reply in session.get(
@@ -156,13 +154,15 @@ class ZenohTeam(Team):
         if key == f"{own}/name":
             query.reply(key, b"")
             return
-        since = int(query.parameters.get("since", "0"))
+        asked = query.parameters.get("since", "0")
+        since = int(asked) if asked.isdecimal() else 0
         with self._lock:
-            words = [(topic, word) for topic, (number, word) in self._said.items() if number > since]
+            words = [(topic, *said) for topic, said in self._said.items() if said[0] > since]
             count = self._count
-        for topic, word in words:
+        for topic, _, word in words:
             query.reply(f"{own}/{topic}", word)
-        query.reply(f"{own}/{_WHOLE}", _HEAD.pack(self._life, count))
+        numbers = np.array([number for _, number, _ in words], dtype="<u8")
+        query.reply(f"{own}/{_WHOLE}", _HEAD.pack(self._life, count) + numbers.tobytes())
 
     def _take(self, sample: Any) -> None:
         sender, _, topic = str(sample.key_expr).removeprefix(f"{self._prefix}/").partition("/")
@@ -171,7 +171,8 @@ class ZenohTeam(Team):
             return
         life, number = _HEAD.unpack_from(word)
         if topic == _WHOLE:
-            self._inbox.answered(sender, life, number)
+            told = np.frombuffer(word[_HEAD.size :][: (len(word) - _HEAD.size) // 8 * 8], dtype="<u8")
+            self._inbox.answered(sender, life, number, told.tolist())
             return
         self._inbox.put(Letter(sender, topic, word[_HEAD.size :]), life, number)
 
@@ -185,11 +186,3 @@ class ZenohTeam(Team):
             self._session.get(selector, self._take_reply, timeout=_ASK_TIMEOUT_S, target=self._all)
         except self._zenoh.ZError:
             self._inbox.failed += 1
-
-
-def _imported() -> Any:
-    try:
-        import zenoh
-    except ImportError:
-        raise PluginError('team zenoh is not installed; type: pip install "explore-bt[fleet]"') from None
-    return zenoh

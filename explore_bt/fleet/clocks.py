@@ -1,0 +1,129 @@
+"""How long words were under way, though no two robots have the same clock."""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+__all__ = ["UNMEASURED_S", "Clocks", "WordAges", "clocks_from", "clocks_to_bytes"]
+
+UNMEASURED_S = 1.0
+"""A word counts as so old while nobody has told how long the way to its speaker takes."""
+_WINDOW_S = 3.0
+"""Simulated clocks slip against one another: what was found longer ago than twice this is forgotten."""
+_HEAD = struct.Struct("<QB")
+_LEAD = struct.Struct("<QdB")
+
+
+@dataclass(frozen=True, slots=True)
+class Clocks:
+    """What a robot has found out about the clocks of the others.
+
+    Attributes:
+        life: of the robot that tells; another one after a restart.
+        leads: mate -> its life, and the least that the teller's clock showed beyond the stamp of a word of it
+            when that word was heard, seconds: what the clocks differ by, and the fastest way.
+    """
+
+    life: int
+    leads: Mapping[str, tuple[int, float]] = field(default_factory=dict)
+
+
+def clocks_to_bytes(told: Clocks) -> bytes:
+    """Little endian; names as UTF-8, with their length before them."""
+    parts = [_HEAD.pack(told.life, len(told.leads))]
+    for name, (life, lead_s) in told.leads.items():
+        text = name.encode()
+        parts.append(_LEAD.pack(life, lead_s, len(text)) + text)
+    return b"".join(parts)
+
+
+def clocks_from(body: bytes) -> Clocks:
+    """What ``clocks_to_bytes`` was given.
+
+    Raises:
+        ValueError, struct.error: cut off or damaged.
+    """
+    life, count = _HEAD.unpack_from(body)
+    at, leads = _HEAD.size, {}
+    for _ in range(count):
+        of, lead_s, length = _LEAD.unpack_from(body, at)
+        at += _LEAD.size + length
+        if at > len(body) or not math.isfinite(lead_s):
+            raise ValueError("a name is cut off, or a number is not finite")
+        leads[body[at - length : at].decode()] = (of, lead_s)
+    return Clocks(life, leads)
+
+
+class WordAges:
+    """Bounds how old a word is when it is heard, by the way there and back.
+
+    Every robot tells each other one the least lead of its own clock over that one's words. Added to the lead
+    of one's own clock over a word, the clocks' difference cancels out: what is left is this word's way, and
+    the fastest way back. A word is never older than that, whatever the network and the clocks.
+
+    Args:
+        name: the robot's.
+        life: of the robot; another one after a restart.
+    """
+
+    def __init__(self, name: str, life: int) -> None:
+        self._name, self._life = name, life
+        self._mates: dict[str, _Clock] = {}
+        self._count, self._sum_s, self._most_s = 0, 0.0, 0.0
+
+    def bound_s(self, sender: str, stamp_s: float, now_s: float) -> float:
+        """A word is heard: how old it is at most.
+
+        Args:
+            sender: who speaks.
+            stamp_s: on its clock, when it spoke.
+            now_s: on one's own.
+        """
+        clock = self._mates.setdefault(sender, _Clock())
+        clock.note(now_s - stamp_s, now_s)
+        if clock.way_back_s is None:
+            return UNMEASURED_S
+        age_s = max(now_s - stamp_s + clock.way_back_s, 0.0)
+        self._count, self._sum_s = self._count + 1, self._sum_s + age_s
+        self._most_s = max(self._most_s, age_s)
+        return age_s
+
+    def hear(self, sender: str, told: Clocks) -> None:
+        """A mate tells what it has found out; one that was started anew has another clock."""
+        if told.life != self._mates.setdefault(sender, _Clock()).life:
+            self._mates[sender] = _Clock(told.life)
+        life, lead_s = told.leads.get(self._name, (0, 0.0))
+        if life == self._life:
+            self._mates[sender].way_back_s = lead_s
+
+    def figures(self) -> Mapping[str, float]:
+        """Mean and most of all bounds so far, seconds; 0 while nothing is measured."""
+        return {"word_age_mean_s": self._sum_s / max(self._count, 1), "word_age_most_s": self._most_s}
+
+    def tell(self) -> Clocks:
+        """What the others need to know."""
+        known = {name: clock for name, clock in self._mates.items() if clock.life}
+        return Clocks(self._life, {name: (clock.life, clock.least_s) for name, clock in known.items()})
+
+
+@dataclass(slots=True)
+class _Clock:
+    """One life of a mate; the least of the last ``_WINDOW_S`` to twice as long."""
+
+    life: int = 0
+    way_back_s: float | None = None
+    _now: float = math.inf
+    _before: float = math.inf
+    _since_s: float = -math.inf
+
+    def note(self, lead_s: float, now_s: float) -> None:
+        if now_s - self._since_s > _WINDOW_S:
+            self._before, self._now, self._since_s = self._now, math.inf, now_s
+        self._now = min(self._now, lead_s)
+
+    @property
+    def least_s(self) -> float:
+        return min(self._now, self._before)
