@@ -3,7 +3,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from explore_bt_drivers.world import World, fitting_cells, load_world, observable_floor, read_world_file
+from explore_bt_drivers.world import (
+    World,
+    choose_start,
+    fitting_cells,
+    load_world,
+    observable_floor,
+    read_world_file,
+)
 from explore_bt_drivers.world.index import build_index, cast_rays, nearest
 from explore_bt_drivers.world.observable import reachable_cells
 from hypothesis import given, settings
@@ -138,6 +145,20 @@ def test_fitting_cells_keep_the_radius_from_everything() -> None:
     rng = np.random.default_rng(0)
     for row, col in rng.choice(np.argwhere(world.floor.free), 300):
         assert fitting[row, col] == (world.clearance_m(*world.floor.center_of(row, col)) >= 0.25 - 1e-6)
+
+
+def test_without_a_start_it_is_the_widest_place_of_the_largest_piece_of_floor(tmp_path: Path) -> None:
+    cells = np.full((80, 160), OCCUPIED, dtype=np.int8)
+    cells[2:22, 2:150] = FREE  # a corridor with a bay
+    cells[2:28, 100:126] = FREE
+    cells[40:75, 2:37] = FREE  # a hall that nobody comes to
+    world = save_map(tmp_path, cells)
+    start = choose_start(world, None, 0.25)
+    row, col = world.floor.cell_of(start.x, start.y)
+    assert 13 <= row <= 15
+    assert 108 <= col <= 118
+    too_wide_for_the_corridor = choose_start(world, None, 1.5)
+    assert world.floor.cell_of(*too_wide_for_the_corridor.xy) == (57, 19)
 
 
 def test_a_passage_narrower_than_the_robot_ends_its_reach(tmp_path: Path) -> None:

@@ -31,16 +31,18 @@ class TestIndependent(AllocatorContract):
         return Independent(PluginOptions())
 
 
-def plainly(offers: Offers, evenness: float) -> list[set[int]]:
+def plainly(offers: Offers, evenness: float, follow_up_m: float) -> list[set[int]]:
     """The auction by the book: every bid of every round anew, tours as lists."""
     robots, places = offers.from_robots_m.shape
     tours: list[list[int]] = [[] for _ in range(robots)]
 
     def length(robot: int, tour: list[int]) -> float:
+        begun_m = offers.committed_m[robot] + (follow_up_m if offers.committed_m[robot] > 0.0 else 0.0)
         if not tour:
-            return float(offers.committed_m[robot])
+            return float(begun_m)
         legs = sum(offers.between_m[a, b] for a, b in itertools.pairwise(tour))
-        return float(offers.committed_m[robot] + offers.from_robots_m[robot, tour[0]] + legs)
+        behind = sum(follow_up_m * min(offers.gains_m2[place] / 5.0, 1.0) for place in tour)
+        return float(begun_m + offers.from_robots_m[robot, tour[0]] + legs + behind)
 
     left = set(range(places))
     while left:
@@ -49,6 +51,7 @@ def plainly(offers: Offers, evenness: float) -> list[set[int]]:
             before = length(robot, tours[robot])
             at = range(len(tours[robot]) + 1)
             longer = min(length(robot, [*tours[robot][:i], place, *tours[robot][i:]]) for i in at)
+            longer -= follow_up_m * min(offers.gains_m2[place] / 5.0, 1.0)  # it comes after the place
             bids.append((longer - before + evenness * longer, place, robot))
         _, place, robot = min(bids)
         options = [[*tours[robot][:i], place, *tours[robot][i:]] for i in range(len(tours[robot]) + 1)]
@@ -58,10 +61,15 @@ def plainly(offers: Offers, evenness: float) -> list[set[int]]:
 
 
 @settings(max_examples=60, deadline=None)
-@given(seed=st.integers(0, 10_000), robots=st.integers(1, 5), places=st.integers(1, 12))
-def test_the_auction_is_the_one_by_the_book(seed: int, robots: int, places: int) -> None:
-    auction = Auction(AuctionOptions(evenness=0.5))
-    expected = plainly(offers_of(seed, robots, places), 0.5)
+@given(
+    seed=st.integers(0, 10_000),
+    robots=st.integers(1, 5),
+    places=st.integers(1, 12),
+    follow_up_m=st.sampled_from([0.0, 3.0, 20.0]),
+)
+def test_the_auction_is_the_one_by_the_book(seed: int, robots: int, places: int, follow_up_m: float) -> None:
+    auction = Auction(AuctionOptions(evenness=0.5, follow_up=follow_up_m))
+    expected = plainly(offers_of(seed, robots, places), 0.5, follow_up_m)
     for asker in range(robots):
         assert set(auction.allot(offers_of(seed, robots, places, asker))) == expected[asker]
 

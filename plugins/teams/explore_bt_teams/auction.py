@@ -10,8 +10,12 @@ from numba import njit
 from pydantic import Field
 
 from explore_bt.interfaces import API_VERSION, Allocator, Offers, PluginOptions
+from explore_bt.units import Length
 
 __all__ = ["Auction", "AuctionOptions"]
+
+
+_LARGE_M2 = 5.0
 
 
 class AuctionOptions(PluginOptions):
@@ -22,6 +26,12 @@ class AuctionOptions(PluginOptions):
         ge=0.0,
         le=100.0,
         description="0: the least way for all together; more: the earliest end for all",
+    )
+    follow_up: Length = Field(
+        10.0,
+        ge=0.0,
+        le=100.0,
+        description="further way that a place of 5 m² brings along; one that shows less brings less",
     )
     kept: float = Field(
         0.8, ge=0.1, le=1.0, description="what the way to a place counts for who is on its way to it"
@@ -34,7 +44,8 @@ class Auction(Allocator):
     All know the same map, places and claims, so all come to nearly the same result; where they do not, the
     claim that is told first stands. A bid is what a place adds to the robot's tour at the best position in
     it, plus a share of how long that tour is then; the least bid over all places and robots wins, until all
-    are given away.
+    are given away. A place makes a tour longer by what is to be found behind it, too: else one robot is given
+    every opening of a corridor, for what lies behind them is not known yet.
     """
 
     name = "auction"
@@ -55,7 +66,8 @@ class Auction(Allocator):
         owners = _auction(
             from_robots,
             np.ascontiguousarray(offers.between_m, dtype=np.float64),
-            np.ascontiguousarray(offers.committed_m, dtype=np.float64),
+            offers.committed_m + self._settings.follow_up * (offers.committed_m > 0.0),
+            self._settings.follow_up * np.minimum(offers.gains_m2 / _LARGE_M2, 1.0),
             ranks.astype(np.int64),
             self._settings.evenness,
         )
@@ -63,7 +75,7 @@ class Auction(Allocator):
 
 
 @njit(cache=True)
-def _auction(from_robots, between, committed, ranks, evenness):  # type: ignore[no-untyped-def]  # numba kernel
+def _auction(from_robots, between, committed, behind, ranks, evenness):  # type: ignore[no-untyped-def]  # numba kernel
     """(N,) int64: to whom each place goes; see :class:`Auction`."""
     robots, places = from_robots.shape
     tours = np.zeros((robots, places), dtype=np.int64)
@@ -87,7 +99,7 @@ def _auction(from_robots, between, committed, ranks, evenness):  # type: ignore[
             tours[winner, i] = tours[winner, i - 1]
         tours[winner, position] = item
         counts[winner] += 1
-        lengths[winner] += best_more
+        lengths[winner] += best_more + behind[item]
         owners[item] = winner
     return owners
 

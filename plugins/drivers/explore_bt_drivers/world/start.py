@@ -50,7 +50,7 @@ def choose_start(
         WorldError: the footprint does not fit there; names the nearest place where it does.
     """
     others = others or {}
-    start = wanted or world.start or widest_spot(world)
+    start = wanted or world.start or widest_spot(world, radius_m)
     if wanted is None and others:
         start = _beside(world, start, radius_m, others)
     if not all(math.isfinite(value) for value in (start.x, start.y, start.yaw_rad)):
@@ -108,10 +108,18 @@ def stand_of(world: World, resumed: Resumption | None, radius_m: float) -> Pose2
     return stand
 
 
-def widest_spot(world: World) -> Pose2:
-    """The floor cell's centre that is farthest from everything (the first such one), facing along x."""
+def widest_spot(world: World, radius_m: float) -> Pose2:
+    """The floor cell's centre that is farthest from everything (the first such one), facing along x.
+
+    Where floor is in several pieces, as behind walls and windows, it is the one with most room for the robot.
+    """
+    fitting = fitting_cells(world, radius_m).astype(np.uint8)
+    _, labels, figures, _ = cv2.connectedComponentsWithStats(fitting, connectivity=8)
+    pieces = figures[1:, cv2.CC_STAT_AREA]
+    in_largest = labels == 1 + int(np.argmax(pieces)) if len(pieces) else world.floor.free
     free = np.pad(world.floor.free.astype(np.uint8), 1)
     distance = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
+    distance = np.where(in_largest, distance, 0.0)
     row, col = np.unravel_index(int(np.argmax(distance)), distance.shape)
     return Pose2(*world.floor.center_of(int(row), int(col)), 0.0)
 
