@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Sequence
 
@@ -29,7 +30,7 @@ _AGREEING, _SPAN_M = 3, 3.0
 """So many closures over so much way must say the same, as of a robot's own."""
 _EXTENT_M = 3.5
 """And, as nobody had said how the maps lie, so far apart: what repeats from room to room shows by then."""
-_AGREEING_TOLD, _SPAN_TOLD_M = 3, 1.0
+_AGREEING_TOLD, _SPAN_TOLD_M = 3, 0.5
 """And where they say what somebody had said: to find that by chance is another matter."""
 _REMEMBERED_M = 40.0
 _REFUSED_M, _REFUSED_RAD = 1.0, 0.3
@@ -53,7 +54,8 @@ class MateBond:
         self._search = MateSearch()
         self._theirs, self._ours = FarClosureFinder(), FarClosureFinder()
         self._pending: list[Edge] = []
-        self._looked_at = self._admitted = self._judged_from = 0
+        self._followed = -1
+        self._looked_at = self._admitted = self._judged_from = self._checked = 0
         self._edges: dict[tuple[float, ...], Edge] = {}
         self._lately: deque[bool] = deque(maxlen=_LATELY)
         self._fit: MapFit | None = None
@@ -71,7 +73,7 @@ class MateBond:
 
     def expect(self, T_ours_theirs: Pose2) -> None:
         """See ``GraphShare.expect``."""
-        self._told = T_ours_theirs
+        self._told, self._checked = T_ours_theirs, 0
 
     def take(self, told: SharedKeyframe | SharedStretch, back: BackEnd) -> None:
         """See ``GraphShare.take``; a mate that has begun anew is a stranger."""
@@ -80,6 +82,7 @@ class MateBond:
             if known[told.number].stamp_s != told.stamp_s:
                 self.let_go(back)
                 self._mate, self._theirs = MateGraph(), FarClosureFinder()
+                self._checked, self._followed = 0, -1
             else:
                 return
         self._mate.take(told)
@@ -96,9 +99,8 @@ class MateBond:
                 self._offer(back, self._closures_here(back))
                 self._doubt(back)
             return
-        if is_new and self._told is not None:
-            found = self._fitting(back, MapFit.rigid(self._told))
-            self._weigh(back, [closure_edge(self._mate.poses, *each) for each in found])
+        if self._told is not None:
+            self._check(back, self._told, is_new)
         if not self.is_tied and (edge := self._search.step(back.keyframes, back.poses, self._mate)):
             self._weigh(back, [edge])
 
@@ -131,6 +133,19 @@ class MateBond:
         self._lately.clear()
 
     # --- before anything is believed --------------------------------------------------------------------
+
+    def _check(self, back: BackEnd, told: Pose2, is_new: bool) -> None:
+        """Closures as the maps are said to lie: of one's own newest keyframe, and of the mate's."""
+        fit, edges = MapFit.rigid(told), []
+        if is_new:
+            edges += [closure_edge(self._mate.poses, *each) for each in self._fitting(back, fit)]
+        while self._checked < len(self._mate.keyframes) and not edges:
+            number, self._checked = self._checked, self._checked + 1
+            pose = told.compose(self._mate.pose(number))
+            scan = self._mate.keyframes[number]
+            found = _fitting(self._ours, back.keyframes, back.poses, scan, pose, most=1)
+            edges += [_turned(closure_edge(back.poses, place, number, each)) for place, each in found]
+        self._weigh(back, edges)
 
     def _weigh(self, back: BackEnd, edges: Sequence[Edge]) -> None:
         """Note closures from the mate's to one's own keyframes; once enough agree the graphs are one."""
@@ -176,14 +191,17 @@ class MateBond:
         told = None if self._told is None else MapFit.rigid(self._told)
         is_as_told = told is not None and all(self._says(edge, back, told, 0.3, 0.1) for edge in agreed)
         least, span_m = (_AGREEING_TOLD, _SPAN_TOLD_M) if is_as_told else (_AGREEING, _SPAN_M)
-        driven_m = [back.keyframes[edge.b].driven_m for edge in agreed]
+        span = max(
+            np.ptp([back.keyframes[edge.b].driven_m for edge in agreed]),
+            np.ptp([self._mate.keyframes[edge.a].driven_m for edge in agreed]),
+        )
         at = back.poses[[edge.b for edge in agreed], :2]
         extent_m = float(np.hypot(*(at[:, None] - at[None]).transpose(2, 0, 1)).max())
         if not is_as_told and extent_m < _EXTENT_M:
             return False
         is_majority = 2 * len(agreed) > len(self._pending)
-        places = {edge.b for edge in agreed}
-        return is_majority and len(places) >= least and max(driven_m) - min(driven_m) >= span_m
+        count = max(len({edge.a for edge in agreed}), len({edge.b for edge in agreed}))
+        return is_majority and count >= least and span >= span_m
 
     def _says(
         self,
@@ -221,6 +239,9 @@ class MateBond:
 
     def _follow(self, back: BackEnd) -> None:
         """What the mate has told since: more keyframes, more closures of its own, fewer."""
+        if self._mate.revision == self._followed:
+            return
+        self._followed = self._mate.revision
         told = {_name(edge): edge for edge in self._mate.edges()}
         if told.keys() == self._edges.keys():
             return
@@ -307,6 +328,18 @@ def _fitting(
             chosen.append(index)
     fitted = [(place, finder.fitted(keyframes, poses, scan, Sighting(place, pose, 1.0))) for place in chosen]
     return [(place, alignment) for place, alignment in fitted if alignment is not None]
+
+
+def _turned(edge: Edge) -> Edge:
+    """The same constraint, seen from its other end."""
+    back = edge.relative.inverse()
+    turn = np.eye(3)
+    turn[:2, :2] = [
+        [math.cos(edge.relative.yaw_rad), -math.sin(edge.relative.yaw_rad)],
+        [math.sin(edge.relative.yaw_rad), math.cos(edge.relative.yaw_rad)],
+    ]
+    turn[:2, 2] = [edge.relative.y, -edge.relative.x]
+    return Edge(edge.b, edge.a, back, turn @ edge.covariance @ turn.T, edge.is_closure)
 
 
 def _name(edge: SharedEdge) -> tuple[float, ...]:

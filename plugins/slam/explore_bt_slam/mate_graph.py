@@ -19,10 +19,12 @@ class MateGraph:
 
     Attributes:
         keyframes: those of which scan and pose are known.
+        revision: grows with whatever is told.
     """
 
     def __init__(self) -> None:
         self.keyframes: list[Keyframe] = []
+        self.revision = 0
         self._scans: dict[int, SharedKeyframe] = {}
         self._stretches: dict[int, SharedStretch] = {}
         self._poses = np.zeros((0, 3))
@@ -48,6 +50,7 @@ class MateGraph:
 
     def take(self, told: SharedKeyframe | SharedStretch) -> None:
         """The newest of each counts."""
+        self.revision += 1
         if isinstance(told, SharedStretch):
             self._stretches[told.number] = told
         elif told.number >= len(self.keyframes):

@@ -19,7 +19,7 @@ __all__ = ["MateSearch"]
 
 _PLACES_PER_STEP = 1
 _PLACE_SPACING_M = 2.0
-_TRY_SPACING_M = 0.5
+_TRY_SPACING_M = 1.0
 _SCORE, _STRETCH_M, _REACH_M = 0.42, 4.0, 8.0
 """Less than for a robot's own loops: what one has seen of a place the other need not have."""
 _SAME_M = 0.5
