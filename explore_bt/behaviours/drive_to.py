@@ -8,6 +8,7 @@ import numpy as np
 
 from explore_bt.behaviours.mates import goes_before, mate_in_the_way
 from explore_bt.behaviours.people import SOMEONE, someone_is_in_the_way, who_is_near
+from explore_bt.behaviours.share import claimed_before
 from explore_bt.errors import ComponentFailure, GoalBlocked, NoPath, PlanningFailure, StartBlocked
 from explore_bt.exploration import clearance_at, visible_unknown_area
 from explore_bt.interfaces import ControlStatus, HeldBy
@@ -34,10 +35,10 @@ class DriveTo(Leaf):
     """Plans a path to the goal and follows it; plans anew when the path is cut or the robot is held.
 
     The path goes over what is left of the goal's ``via``. SUCCESS at the goal, or as soon as nothing new is
-    to be seen from it nor from a place still to be passed (``until_seen``), or after some way
-    (``look_again``; then also where the way is cut and the one around is 5 m longer). A goal that promises
-    less than ``until_seen`` is a scrap: once begun it is driven to, or until nothing of it is left, for
-    deciding anew would only trade it for the next scrap.
+    to be seen from it nor from a place still to be passed, or a team mate that goes first is on its way
+    there too (``until_seen``), or after some way (``look_again``; then also where the way is cut and the one
+    around is 5 m longer). A goal that promises less than ``until_seen`` is a scrap: once begun it is driven
+    to, or until nothing of it is left, for deciding anew would only trade it for the next scrap.
     A team mate in the way is waited for, or planned around; where there is no way around and it goes first,
     that is a FAILURE ``someone_in_the_way``: see ``make_way``. Someone unknown in the way is waited for,
     without a new plan, for what is free now is not free in a second; after a while (``give_way``) that is
@@ -267,6 +268,9 @@ class DriveTo(Leaf):
         if self.until_seen <= 0.0 or self.robot.now_s() < self._next_look_s:
             return False
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
+        if mate := claimed_before(self.robot, self.goal.position):
+            self.say(f"left to {mate}, which is on its way there too")
+            return True
         enough_m2 = _NOTHING_M2 if self._is_scrap else self.until_seen
         most_m2 = 0.0
         for place in (self.goal.position, *self._via):

@@ -12,14 +12,16 @@ from numpy.typing import NDArray
 from explore_bt.interfaces import Offers, RobotServices
 from explore_bt.types import Doing, Mate
 
-__all__ = ["allotted", "claims_of_others", "free_at", "workers"]
+__all__ = ["allotted", "claimed_before", "claims_of_others", "free_at", "workers"]
 
 _SAME_M = 1.0
+_SAME_PLACE_M = 0.5
+"""Two cannot stand at places so near; places on two sides of a wall are farther apart."""
 
 
 def workers(robot: RobotServices) -> list[Mate]:
     """The team mates among whom work is divided."""
-    return [mate for mate in robot.team.mates if mate.doing is not Doing.OVER]
+    return [mate for mate in robot.team.mates if mate.doing not in (Doing.OVER, Doing.PAUSED)]
 
 
 def claims_of_others(robot: RobotServices, present: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -40,6 +42,21 @@ def claims_of_others(robot: RobotServices, present: NDArray[np.float64]) -> NDAr
             if not (is_own and robot.name < mate.name):
                 found.append(place)
     return np.array(found).reshape(-1, 2)
+
+
+def claimed_before(robot: RobotServices, place: tuple[float, float]) -> str:
+    """Who is on its way to the same place and goes on, its name coming first; empty for nobody.
+
+    Both claim it where neither had heard of the other's claim yet.
+    """
+    if not robot.team.allocator.heeds_claims:
+        return ""
+    for mate in workers(robot):
+        if mate.name < robot.team.name and any(
+            math.dist(place, each) < _SAME_PLACE_M for each in mate.claims
+        ):
+            return mate.name
+    return ""
 
 
 def free_at(mate: Mate) -> tuple[float, float]:

@@ -16,9 +16,9 @@ _LAST_M2 = 0.1
 class WaitForTeam(Leaf):
     """Waits until the map of all has grown, as one of those who have found nothing to do.
 
-    SUCCESS once there is more to look through, or somebody who was at work is silent: what it had claimed is
-    left. FAILURE once nobody of the team is at work any more and the map is the one that was last looked
-    through. A robot that is alone fails at once.
+    SUCCESS once there is more to look through, or somebody who was at work is silent or paused: what it had
+    claimed is left. FAILURE once nobody of the team is at work any more and the map is the one that was last
+    looked through. A robot that is alone fails at once.
     """
 
     type_key = "wait_for_team"
@@ -41,9 +41,10 @@ class WaitForTeam(Leaf):
         """Has the map grown, and is anybody at work?"""
         at_work = [mate.name for mate in self.robot.team.mates if mate.doing is Doing.AT_WORK]
         self._workers.update(at_work)
-        if silent := self._workers - {mate.name for mate in self.robot.team.mates}:
+        going_on = {mate.name for mate in self.robot.team.mates if mate.doing is not Doing.PAUSED}
+        if gone := self._workers - going_on:
             self.robot.team.say_doing(Doing.AT_WORK)
-            self.say(f"{', '.join(sorted(silent))} is silent: look again")
+            self.say(f"{', '.join(sorted(gone))} is silent or paused: look again")
             return Status.SUCCESS
         new_m2 = self._area_m2() - self._known_m2
         waited_s = self.robot.now_s() - self._since_s

@@ -47,12 +47,24 @@ class StepKind(enum.StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Pause(Command[None]):
-    """Stand still before the next tick; robots in real time are held."""
+    """Stand still before the next tick; robots in real time are held.
+
+    Attributes:
+        robot: only this one stands, and the others go on; empty for all.
+    """
+
+    robot: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Resume(Command[None]):
-    """Go on to the next breakpoint, or to the end."""
+    """Go on to the next breakpoint, or to the end.
+
+    Attributes:
+        robot: the one that was paused alone; empty for the run, in which who was paused alone stays so.
+    """
+
+    robot: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +75,8 @@ class Step(Command[None]):
         kind: to before the next tick; to after the tick of the next node; or to after the tick of the next
             node whose status differs from the one it had last.
         count: so many times.
-        robot: whose nodes count; ``*`` for all robots.
+        robot: whose nodes count, or who goes on for a tick while the others stand; ``*`` for all robots. One
+            that was paused alone makes its ticks while the others go on.
     """
 
     kind: StepKind = StepKind.TICK

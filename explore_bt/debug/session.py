@@ -26,10 +26,12 @@ from explore_bt.debug.commands import (
     Resume,
     SetParam,
     Step,
+    StepKind,
     View,
 )
 from explore_bt.debug.expression import Expression
 from explore_bt.debug.forced_answers import ForcedAnswers
+from explore_bt.debug.held import HeldRobots
 from explore_bt.debug.herald import Listener
 from explore_bt.debug.params import Params
 from explore_bt.debug.places import Place, Places
@@ -73,6 +75,7 @@ class DebugSession(Attendant):
         self._listeners: dict[Listener[DebugState], None] = {}
         self._listeners_lock = threading.Lock()
         self._stride = Stride()
+        self._held = HeldRobots()
         self._pausing = "before the first tick" if paused else ""
         self._state = DebugState(params=self._params.states)
         self._runner: Runner | None = None
@@ -136,6 +139,8 @@ class DebugSession(Attendant):
             self._pausing = why
         if self._pausing:
             self._stand_still(self._pausing)
+        runner = self._attended()
+        self._held.before_tick(runner.paused, self._stride.who_stands(self._places.robots))
 
     def end(self) -> None:
         """Let everybody know."""
@@ -211,6 +216,7 @@ class DebugSession(Attendant):
             changes |= {
                 "breakpoints": self._breakpoints.states(),
                 "forced": self._forced.states,
+                "held": self._held.names,
                 "params": self._params.states,
                 "tick": runner.tick,
                 "stamp_s": runner.now_s,
@@ -242,12 +248,16 @@ class DebugSession(Attendant):
 
     def _answer(self, command: Command[Any]) -> object:
         match command:
+            case Pause(robot=robot) if robot and len(self._places.robots) > 1:
+                self._hold(self._places.robot(robot).name)
             case Pause():
                 self._pause()
+            case Resume(robot=robot) if robot and len(self._places.robots) > 1:
+                self._let_go(self._places.robot(robot).name)
             case Resume():
                 self._go_on(Stride())
             case Step():
-                self._go_on(Stride.of(command, self._places).after(self._stride))
+                self._step(command)
             case Quit():
                 self._attended().stop.raise_flag("stopped by hand (debugger)")
             case AddBreakpoint():
@@ -274,6 +284,28 @@ class DebugSession(Attendant):
         if not self._state.paused:
             self._pausing = "paused by hand"
             self._show(why="pausing before the next tick")
+
+    def _hold(self, robot: str) -> None:
+        self._held.hold(robot)
+        self._note("stands, and the others go on", robot)
+
+    def _let_go(self, robot: str) -> None:
+        if robot not in self._held:
+            raise DebugError(f"robot {robot} is not paused alone")
+        self._held.let_go(robot)
+        self._note("goes on", robot)
+
+    def _step(self, step: Step) -> None:
+        stride = Stride.of(step, self._places)
+        is_alone, goes_on = step.robot in self._held, not self._state.paused
+        if is_alone and goes_on and step.kind is not StepKind.TICK:
+            raise DebugError(
+                "in the middle of a tick all robots stand: pause the run first, or step by ticks"
+            )
+        if is_alone and step.kind is StepKind.TICK:
+            self._held.step(step.robot, step.count)
+        if not (is_alone and goes_on):
+            self._go_on(stride.after(self._stride))
 
     def _go_on(self, stride: Stride) -> None:
         self._stride, self._pausing = stride, ""

@@ -55,6 +55,7 @@ class DebugState:
     Attributes:
         paused: whether the trees stand still.
         over: whether the run has ended.
+        held: robots that stand while the others go on.
         why: in words, why it is paused, or what it is doing.
         is_simulated: whether time stands still too; else the robots are held while the trees wait.
         robot, path, moment, status: the node it is paused at; empty between two ticks and while running.
@@ -67,6 +68,7 @@ class DebugState:
 
     paused: bool = False
     over: bool = False
+    held: tuple[str, ...] = ()
     why: str = "getting ready"
     is_simulated: bool = True
     robot: str = ""

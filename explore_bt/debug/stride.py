@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fnmatch import fnmatchcase
 
 from explore_bt.debug.commands import Step, StepKind
@@ -55,6 +56,12 @@ class Stride:
     def watches_nodes(self) -> bool:
         """Whether ``next_node`` is to be asked."""
         return self._kind in (StepKind.NODE, StepKind.CHANGE)
+
+    def who_stands(self, robots: Iterable[str]) -> list[str]:
+        """In the coming tick: all but the one that a step of ticks is for."""
+        if self._kind is not StepKind.TICK:
+            return []
+        return [name for name in robots if not fnmatchcase(name, self._robot)]
 
     @property
     def why(self) -> str:

@@ -28,6 +28,8 @@ class Alone:
     """Has nobody to tell anything to; the null object of ``TeamLink``, and ``TeamServices`` for tests."""
 
     yields = 0
+    lag_s = 0.0
+    is_paused = False
 
     def __init__(self, name: str = "robot", allocator: Allocator | None = None) -> None:
         self.name = name

@@ -73,6 +73,7 @@ class WordAges:
         self._name, self._life = name, life
         self._mates: dict[str, _Clock] = {}
         self._count, self._sum_s, self._most_s = 0, 0.0, 0.0
+        self._freshness = _Least()
 
     def bound_s(self, sender: str, stamp_s: float, now_s: float) -> float:
         """A word is heard: how old it is at most.
@@ -83,12 +84,13 @@ class WordAges:
             now_s: on one's own.
         """
         clock = self._mates.setdefault(sender, _Clock())
-        clock.note(now_s - stamp_s, now_s)
+        clock.lead_s.note(now_s - stamp_s, now_s)
         if clock.way_back_s is None:
             return UNMEASURED_S
         age_s = max(now_s - stamp_s + clock.way_back_s, 0.0)
         self._count, self._sum_s = self._count + 1, self._sum_s + age_s
         self._most_s = max(self._most_s, age_s)
+        self._freshness.note(-age_s, now_s)
         return age_s
 
     def hear(self, sender: str, told: Clocks) -> None:
@@ -99,6 +101,11 @@ class WordAges:
         if life == self._life:
             self._mates[sender].way_back_s = lead_s
 
+    @property
+    def recent_s(self) -> float:
+        """The most of the bounds of the last seconds; 0 where nothing was bounded."""
+        return max(-self._freshness.value, 0.0)
+
     def figures(self) -> Mapping[str, float]:
         """Mean and most of all bounds so far, seconds; 0 while nothing is measured."""
         return {"word_age_mean_s": self._sum_s / max(self._count, 1), "word_age_most_s": self._most_s}
@@ -106,24 +113,31 @@ class WordAges:
     def tell(self) -> Clocks:
         """What the others need to know."""
         known = {name: clock for name, clock in self._mates.items() if clock.life}
-        return Clocks(self._life, {name: (clock.life, clock.least_s) for name, clock in known.items()})
+        return Clocks(self._life, {name: (clock.life, clock.lead_s.value) for name, clock in known.items()})
 
 
 @dataclass(slots=True)
-class _Clock:
-    """One life of a mate; the least of the last ``_WINDOW_S`` to twice as long."""
+class _Least:
+    """The least of the last ``_WINDOW_S`` to twice as long; infinite for nothing."""
 
-    life: int = 0
-    way_back_s: float | None = None
     _now: float = math.inf
     _before: float = math.inf
     _since_s: float = -math.inf
 
-    def note(self, lead_s: float, now_s: float) -> None:
+    def note(self, value: float, now_s: float) -> None:
         if now_s - self._since_s > _WINDOW_S:
             self._before, self._now, self._since_s = self._now, math.inf, now_s
-        self._now = min(self._now, lead_s)
+        self._now = min(self._now, value)
 
     @property
-    def least_s(self) -> float:
+    def value(self) -> float:
         return min(self._now, self._before)
+
+
+@dataclass(slots=True)
+class _Clock:
+    """One life of a mate: how far one's own clock is ahead of its words, at least."""
+
+    life: int = 0
+    way_back_s: float | None = None
+    lead_s: _Least = field(default_factory=_Least)

@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import cast
 
+import numpy as np
+
 from explore_bt.fleet.clocks import Clocks, WordAges
 from explore_bt.fleet.graph_messages import Fits
 from explore_bt.fleet.merger import Merger
@@ -50,6 +52,9 @@ class TeamLink:
         slam: whose map is told.
         tell: takes level, source and message of an event.
         sees_mates: whether scans show them.
+
+    Attributes:
+        is_paused: it stands until somebody lets it go on: it tells neither claims nor a way ahead.
     """
 
     def __init__(
@@ -80,6 +85,7 @@ class TeamLink:
         self._now_s = 0.0
         self._claims: tuple[tuple[float, float], ...] = ()
         self._doing = Doing.AT_WORK
+        self.is_paused = False
         self._insists_until_s = -1.0
         self._strangers: set[str] = set()
         self._present: frozenset[str] = frozenset()
@@ -102,6 +108,21 @@ class TeamLink:
     def yields(self) -> int:
         """Below 0 while it insists."""
         return _INSISTS if self._now_s < self._insists_until_s else 0
+
+    @property
+    def claims(self) -> tuple[tuple[float, float], ...]:
+        """Where the robot goes to look, as it tells: nowhere while it is paused."""
+        return () if self.is_paused else self._claims
+
+    @property
+    def doing(self) -> Doing:
+        """What the robot is about, as it tells."""
+        return Doing.PAUSED if self.is_paused else self._doing
+
+    @property
+    def lag_s(self) -> float:
+        """How old words have lately been when heard, at most; 0 alone, or where all have one clock."""
+        return min(self._ages.recent_s, NEAR_S) if self._present else 0.0
 
     def claim(self, places: Sequence[tuple[float, float]]) -> None:
         """Told with the next presence."""
@@ -166,12 +187,14 @@ class TeamLink:
         self._filled_s = now_s
         told = replace(
             presence(),
-            claims=self._claims,
-            doing=self._doing,
+            claims=self.claims,
+            doing=self.doing,
             yields=self.yields,
             knows_start=self._merger.knows_start,
             shares_graph=self._merger.shares_graph,
         )
+        if self.is_paused:
+            told = replace(told, ahead=np.empty((0, 2)))
         self._say(PRESENCE, PRESENCE, encode(told))
         if not self._team.shares_clock and now_s - self._compared_s > _CLOCKS_PERIOD_S - 1e-6:
             self._compared_s = now_s

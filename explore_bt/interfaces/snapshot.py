@@ -9,6 +9,7 @@ from pathlib import Path as FilePath
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.types import (
     Budget,
+    Doing,
     Drawing,
     Estimate,
     Measurement,
@@ -114,6 +115,8 @@ class RobotSnapshot:
         moving: what moves around the robot, as the newest scan tells.
         budgets: what of time, distance and battery the mission allows still.
         charge: of the battery, a share; None where nobody measures it.
+        doing: what the robot is about, as its team is told.
+        claims: where it goes to look, as its team is told, (x, y) in metres, ``map`` frame.
         drawing: what the leaves saw in the last tick in which any of them decided; the same object till then.
     """
 
@@ -136,6 +139,8 @@ class RobotSnapshot:
     moving: tuple[MovingObstacle, ...] = ()
     budgets: tuple[Budget, ...] = ()
     charge: float | None = None
+    doing: Doing = Doing.AT_WORK
+    claims: tuple[tuple[float, float], ...] = ()
 
     @property
     def seen_from(self) -> Pose2:

@@ -23,6 +23,7 @@ from explore_bt.recording.moving import moving_message
 from explore_bt.recording.tree_tally import NodeTally, TreeTally
 from explore_bt.recording.values import to_json
 from explore_bt.types import (
+    Doing,
     Drawing,
     Health,
     Imu,
@@ -100,6 +101,7 @@ class RobotTrack:
         self._grid_written: OccupancyGrid | None = None
         self._path: object = _NOTHING
         self._gate_reason = ""
+        self._told: object = (Doing.AT_WORK, ())
         self._drawing = Drawing()
         self._moving_told: tuple[MovingObstacle, ...] = ()
         self._tally, self._count_due = TreeTally(), _Throttle(_COUNT_PERIOD_NS)
@@ -118,6 +120,7 @@ class RobotTrack:
         self._sensing(time_ns, robot)
         self._plan(time_ns, robot.path)
         self._gate(time_ns, robot)
+        self._team(time_ns, robot)
         self._moving(time_ns, robot.moving)
         self._draw(time_ns, robot.drawing)
         self._measured += [each for each in robot.measured if isinstance(each, self._kinds)]
@@ -262,6 +265,13 @@ class RobotTrack:
             self._write(
                 self._topic + "gate", time_ns, f'{head},"reason":{quote(reason)},"held_by":{held_by}}}'
             )
+
+    def _team(self, time_ns: int, robot: RobotSnapshot) -> None:
+        told = (robot.doing, robot.claims)
+        if told != self._told:
+            self._told = told
+            words = _encode(to_json({"doing": robot.doing, "claims": robot.claims}))
+            self._write(self._topic + "team", time_ns, f'{{"timestamp":{time_json(time_ns)},{words[1:]}')
 
     def _moving(self, time_ns: int, moving: tuple[MovingObstacle, ...]) -> None:
         if moving != self._moving_told and self._moving_due.ready(time_ns):

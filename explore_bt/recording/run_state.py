@@ -12,7 +12,19 @@ from explore_bt.recording.message_log import LoggedMessage, MessageLog
 
 __all__ = ["FOLLOWED_TOPICS", "NodeNow", "RobotState", "followed_topics", "state_at"]
 
-FOLLOWED_TOPICS = ("pose", "truth", "state", "scan", "map", "path", "waypoint", "gate", "moving", "drawing")
+FOLLOWED_TOPICS = (
+    "pose",
+    "truth",
+    "state",
+    "scan",
+    "map",
+    "path",
+    "waypoint",
+    "gate",
+    "team",
+    "moving",
+    "drawing",
+)
 """Topics of a robot of which the newest message says all there is to say."""
 
 _FIRST_REACH_NS = 6_000_000_000  # the recorder writes a key frame every five seconds

@@ -166,6 +166,7 @@ _SCHEMAS: Mapping[str, _Schema] = {
         ate_rmse_m=_MAYBE,
         distance_to_home_m=_NUMBER,
     ),
+    "explore_bt.Team": _object(timestamp=_TIME, doing=_TEXT, claims=_array(_array(_NUMBER))),
     "explore_bt.Measurements": _object(
         timestamp=_TIME,
         order=_TEXT,

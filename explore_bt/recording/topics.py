@@ -42,6 +42,7 @@ ROBOT_TOPICS = (
     Topic("/<robot>/waypoint", "foxglove.PoseInFrame", "on change"),
     Topic("/<robot>/visited", "foxglove.PoseInFrame", "one message for each waypoint"),
     Topic("/<robot>/gate", "explore_bt.Gate", "on change"),
+    Topic("/<robot>/team", "explore_bt.Team", "on change"),
     Topic("/<robot>/moving", "explore_bt.Moving", "on change, at most 4 Hz"),
     Topic("/<robot>/drawing", "explore_bt.Drawing", "on change: whenever a leaf has looked about"),
 )

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from explore_bt.interfaces import Driver, GroundTruth
-from explore_bt.types import UNKNOWN, OccupancyGrid, Pose2
+from explore_bt.interfaces import Driver, GroundTruth, RobotContext
+from explore_bt.types import UNKNOWN, MotionLimits, OccupancyGrid, Pose2
 
-__all__ = ["Origin", "origin_of"]
+__all__ = ["Origin", "context_with", "origin_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +41,19 @@ def origin_of(driver: Driver, knows_start: bool) -> Origin:
         return Origin(start, truth)
     T_map_world = start.compose(stood.inverse())
     return Origin(start, _Moved(truth, T_map_world), T_map_world)
+
+
+def context_with(context: RobotContext, driver: Driver, origin: Origin, limits: MotionLimits) -> RobotContext:
+    """What the other plugins are set up with, once the driver is ready."""
+    return replace(
+        context,
+        start=origin.start,
+        footprint_radius_m=driver.footprint_radius_m,
+        limits=limits,
+        shape=driver.shape,
+        truth=origin.truth,
+        connection=driver.connection,
+    )
 
 
 class _Moved(GroundTruth):

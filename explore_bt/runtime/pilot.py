@@ -110,6 +110,20 @@ class Pilot:
         """The name of the team mate that the robot was last held for."""
         return self._gate.in_the_way
 
+    @property
+    def is_following(self) -> bool:
+        """Whether there is a path to go on along."""
+        return self.path is not None and self._output.status is ControlStatus.RUNNING
+
+    @property
+    def stays_until_s(self) -> float:
+        """The team has been told that the robot stays where it is until then; the gate keeps to it."""
+        return self._gate.stays_until_s
+
+    def stay(self, until_s: float) -> None:
+        """The team will be told so."""
+        self._gate.stays_until_s = max(self._gate.stays_until_s, until_s)
+
     def stop_places(self, here: Pose2, dt_s: float) -> NDArray[np.float64]:
         """(N, 2) metres, ``map`` frame: where the robot passes if it brakes after the coming period."""
         return self._gate.stop_places(self.motion, here, dt_s)

@@ -28,26 +28,31 @@ class Requests:
         self._folder = folder
         self._paused_by = ""
 
-    def heed(self, hold: Callable[[str], None]) -> None:
-        """Called before a tick: takes what was asked, and stands while the mission is paused.
+    def heed(self, hold: Callable[[str], None], paused: dict[str, str]) -> None:
+        """Called before a tick: takes what was asked, and stands while paused; of several that robot does.
 
         Args:
-            hold: one control period at rest, for a reason.
+            hold: one control period of all at rest, for a reason.
+            paused: robot -> why it stands while the others go on.
         """
-        self._take()
+        self._take(paused)
         while self._paused_by and not self._stop.is_raised:
             hold(f"paused by a request to robot {self._paused_by}")
-            self._take()
+            self._take(paused)
 
-    def _take(self) -> None:
+    def _take(self, paused: dict[str, str]) -> None:
         for robot, request in self._asked():
             robot.tell("info", "request", str(request))
             if request is Request.STOP:
                 self._stop.raise_flag(f"stopped by a request to robot {robot.name}")
             elif request is Request.SAVE_MAP:
                 self._save(robot)
-            else:
+            elif len(self._robots) == 1:
                 self._paused_by = robot.name if request is Request.PAUSE else ""
+            elif request is Request.PAUSE:
+                paused[robot.name] = f"paused by a request to robot {robot.name}"
+            else:
+                paused.pop(robot.name, None)
 
     def _asked(self) -> Iterator[tuple[Robot, Request]]:
         for robot in self._robots:

@@ -14,7 +14,7 @@ from explore_bt.interfaces import Commons, Event, MapMemory, MapView, RobotConte
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.fault_log import FaultLog
-from explore_bt.runtime.origin import origin_of
+from explore_bt.runtime.origin import context_with, origin_of
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.resumption import Cut, check_clock
@@ -27,7 +27,7 @@ from explore_bt.runtime.sketch import Sketch
 from explore_bt.runtime.squeeze import SQUEEZES_M, plan_or_squeeze
 from explore_bt.runtime.stop_flag import StopFlag
 from explore_bt.runtime.team_mate import first_path, grids_to_try, standing
-from explore_bt.runtime.team_place import presence_of, team_place
+from explore_bt.runtime.team_place import give_word, presence_of, team_place
 from explore_bt.runtime.tick_counts import TickCounts
 from explore_bt.runtime.tight_places import TightPlaces
 from explore_bt.runtime.upright import Upright
@@ -116,15 +116,7 @@ class Robot:
         check_clock(self.driver, resumed)
         self._origin = origin_of(self.driver, self._spec.knows_start)
         limits = self._mission.limits.apply(self.driver.limits)
-        context = replace(
-            context,
-            start=self._origin.start,
-            footprint_radius_m=self.driver.footprint_radius_m,
-            limits=limits,
-            shape=self.driver.shape,
-            truth=self._origin.truth,
-            connection=self.driver.connection,
-        )
+        context = context_with(context, self.driver, self._origin, limits)
         self.home = cut.memory.home if cut else self._origin.start
         warm_up()
         self.slam.setup(replace(context, start=cut.memory.pose) if cut else context)
@@ -286,7 +278,7 @@ class Robot:
         self._held_s += dt_s
         self._keep_score(now_s, dt_s)
         self._hear_team()
-        self._tell_team(now_s, dt_s)
+        self._tell_team(now_s, dt_s, is_paused=True)
 
     def watch_ticks(self, probe: Probe) -> None:
         """Have ``probe`` asked before and after every tick of every node of the tree."""
@@ -362,6 +354,8 @@ class Robot:
             moving=self.moving,
             budgets=self.budgets(),
             charge=self._purse.charge,
+            doing=self.team.doing,
+            claims=self.team.claims,
         )
 
     def tell(self, level: str, source: str, message: str) -> None:
@@ -388,7 +382,9 @@ class Robot:
         self.team.receive(self._clock_s())
         self.pilot.mates = self._senses.mates = self.team.near
 
-    def _tell_team(self, now_s: float, dt_s: float) -> None:
+    def _tell_team(self, now_s: float, dt_s: float, *, is_paused: bool = False) -> None:
+        self.team.is_paused = is_paused
+        give_word(self.pilot, self.team, now_s)
         about = (self.footprint_radius_m, self._limits.speed_mps, now_s, dt_s)
         self.team.send(now_s, lambda: presence_of(self.pilot, self.estimate(), *about), self.slam.grid())
 

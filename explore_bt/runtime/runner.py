@@ -51,6 +51,7 @@ class Runner:
     Attributes:
         now_s: mission time, on the robots' clocks.
         tick: index of the coming ``TickSnapshot``.
+        paused: robot -> why it stands while the others go on; whoever pauses it lets it go on.
     """
 
     def __init__(
@@ -76,6 +77,7 @@ class Runner:
         self._phase = _Phase.WAKING
         self._after_tick = after_tick
         self.ended: dict[str, Status] = {}
+        self.paused: dict[str, str] = {}
         self._rest_until_s = 0.0
         self._acted_s: dict[str, float] = {}
         self._held_s = 0.0
@@ -105,11 +107,11 @@ class Runner:
             self._advance()
             is_tick = self._is_tick
             if is_tick:
-                self._requests.heed(self.hold)
+                self._requests.heed(self.hold, self.paused)
                 self._attendant.on_period()
                 self._decide()
             for robot in self.robots:
-                robot.act(*self._period_of(robot))
+                self._act(robot)
             if is_tick:
                 self._show()
                 self._after_tick(self)
@@ -126,6 +128,12 @@ class Runner:
         self._held_s += self._dt_s
         if self._is_tick:
             self._show()
+
+    def _act(self, robot: Robot) -> None:
+        if reason := self.paused.get(robot.name):
+            robot.hold(reason, *self._period_of(robot))
+        else:
+            robot.act(*self._period_of(robot))
 
     def tell(self, event: Event) -> None:
         """Pass an event on to the observers."""
@@ -199,7 +207,8 @@ class Runner:
             self._end(Outcome.BUDGET, spent)
             return
         for robot in self.robots:
-            if robot.name not in self.ended:  # a tree that is ticked again would begin anew
+            # a tree that is ticked again after its end would begin anew
+            if robot.name not in self.ended and robot.name not in self.paused:
                 self._tick_tree(robot)
         if len(self.ended) < len(self.robots):
             return

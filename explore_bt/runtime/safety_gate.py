@@ -93,7 +93,8 @@ class SafetyGate:
 
     Attributes:
         mates: those of its team whose word is fresh.
-        in_the_way: the name of the one that it was last held for.
+        in_the_way: the name of the one that it was last held for; empty while it keeps its own word.
+        stays_until_s: the team has been told that the robot stays where it is until then.
     """
 
     def __init__(self, footprint_radius_m: float, limits: MotionLimits, delay_s: float = 0.0) -> None:
@@ -106,6 +107,7 @@ class SafetyGate:
         """
         self.mates: tuple[Mate, ...] = ()
         self.in_the_way = ""
+        self.stays_until_s = -math.inf
         self._radius_m = footprint_radius_m
         self._delay_s = delay_s
         self._limits = limits
@@ -169,9 +171,12 @@ class SafetyGate:
         held_by = HeldBy.MATE if whom else HeldBy.OBSTACLE
         if not fault:
             held_by, fault = HeldBy.SOMEONE, self._fault_by_people(way, now_s)
-        if not fault and np.any(way.poses[:, :2] - way.poses[0, :2]):
+        moves_off = bool(np.any(way.poses[:, :2] - way.poses[0, :2]))
+        if not fault and moves_off:
             held_by, (fault, whom) = HeldBy.MATE, fault_by_mates(way.poses, self._radius_m, self.mates, now_s)
         self.in_the_way = whom or self.in_the_way
+        if not fault and moves_off and now_s < self.stays_until_s:
+            held_by, fault, self.in_the_way = HeldBy.MATE, "the team has been told that it stays here", ""
         if fault:
             return GateDecision(self._next_of_brake(motion, dt_s), fault, held_by)
         self._brake = _Brake(following)

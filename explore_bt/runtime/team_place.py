@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from explore_bt.fleet import Alone, Presence, TeamLink
-from explore_bt.interfaces import Driver, Slam
+from explore_bt.interfaces import Driver, HeldBy, Slam
 from explore_bt.mission import Mission
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.types import Estimate
 
-__all__ = ["presence_of", "team_place"]
+__all__ = ["give_word", "presence_of", "team_place"]
+
+
+_SPARE_S = 0.2
+"""A word is driven by until the next one comes, and one or two may be lost."""
 
 
 def team_place(
@@ -23,6 +27,24 @@ def team_place(
     sees_mates = driver.shows_mates and not (mission.solo is not None and driver.is_simulated)
     team, allocator = mission.team.team.make(), mission.team.allocator.make()
     return TeamLink(robot, team, allocator, slam, tell, sees_mates)
+
+
+def give_word(pilot: Pilot, team: Alone | TeamLink, now_s: float) -> None:
+    """A robot that waits is to stay where it is for as long as words are under way.
+
+    Mates then pass it closely: else it might have set off since it spoke, and two that stand side by side
+    where words are slow would hold each other for ever. It waits if it has no path to follow, or is held for
+    a mate that goes first; so of two that are held for one another one gives its word.
+    """
+    if team.lag_s > 0.0 and pilot.is_at_rest and (not pilot.is_following or _lets_pass(pilot, team)):
+        pilot.stay(now_s + team.lag_s + _SPARE_S)
+
+
+def _lets_pass(pilot: Pilot, team: Alone | TeamLink) -> bool:
+    if pilot.held_by is not HeldBy.MATE:
+        return False
+    before = {mate.name for mate in team.near if (mate.yields, mate.name) < (team.yields, team.name)}
+    return pilot.in_the_way in before
 
 
 def presence_of(
@@ -40,4 +62,5 @@ def presence_of(
     """
     here = pilot.predict(estimate, now_s).T_map_base
     stop, ahead = pilot.stop_places(here, dt_s), pilot.places_ahead(here)
-    return Presence(now_s, now_s + dt_s, here, pilot.motion.twist, radius_m, speed_mps, stop, ahead)
+    binding_s = max(now_s + dt_s, pilot.stays_until_s)
+    return Presence(now_s, binding_s, here, pilot.motion.twist, radius_m, speed_mps, stop, ahead)

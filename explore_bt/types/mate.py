@@ -16,11 +16,15 @@ _STANDS_MPS = 0.02
 
 
 class Doing(enum.StrEnum):
-    """What a robot is about, for its team."""
+    """What a robot is about, for its team.
+
+    A paused one stands, and counts for nothing when work is divided: the others go on without it.
+    """
 
     AT_WORK = "at work"
     IDLE = "idle"
     OVER = "over"
+    PAUSED = "paused"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,12 +1,24 @@
 import numpy as np
 import pytest
+from explore_bt_teams import Greedy
 
 from explore_bt.behaviours import DriveTo
 from explore_bt.errors import GoalBlocked, NoPath
-from explore_bt.interfaces import ControlStatus, HeldBy
+from explore_bt.interfaces import ControlStatus, HeldBy, PluginOptions
 from explore_bt.testing.fake_robot import FakeRobot, open_floor
 from explore_bt.tree import Blackboard, Status
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, MovingObstacle, OccupancyGrid, Path, Pose2, Waypoint
+from explore_bt.types import (
+    FREE,
+    OCCUPIED,
+    UNKNOWN,
+    Mate,
+    MovingObstacle,
+    OccupancyGrid,
+    Path,
+    Pose2,
+    Twist2,
+    Waypoint,
+)
 
 AHEAD = Waypoint(Pose2(3.0, 0.0, 0.0))
 
@@ -225,3 +237,24 @@ def test_a_goal_that_is_seen_is_driven_to_while_a_place_on_the_way_is_not() -> N
         robot.time_s += 1.5
         leaf.tick_once()
         assert leaf.status is status
+
+
+@pytest.mark.parametrize(
+    ("name", "claimed", "goes_on"),
+    [("ada", (4.0, 0.3), False), ("ada", (4.0, 0.6), True), ("zoe", (4.0, 0.0), True)],
+    ids=["goes first", "goes elsewhere", "goes second"],
+)
+def test_a_goal_that_a_mate_has_claimed_at_the_same_time_is_left_to_the_one_that_goes_first(
+    name: str, claimed: tuple[float, float], goes_on: bool
+) -> None:
+    robot = FakeRobot(open_floor(10.0))  # beyond which all is unknown
+    robot.team.allocator = Greedy(PluginOptions())
+    goal = Waypoint(Pose2(4.0, 0.0, 0.0), "", expected_gain_m2=5.0)
+    leaf = drive(robot, goal, until_seen=0.1)
+    nowhere = np.empty((0, 2))
+    told = (Pose2(3.0, 3.0, 0.0), Twist2(), 0.25, 0.5, nowhere, nowhere, (claimed,))
+    robot.team.mates = (Mate(name, 0.0, 0.0, *told),)
+    robot.time_s = 1.5
+    leaf.tick_once()
+    assert leaf.status is (Status.RUNNING if goes_on else Status.SUCCESS)
+    assert goes_on or leaf.feedback_message == "left to ada, which is on its way there too"

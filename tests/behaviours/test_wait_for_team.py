@@ -72,11 +72,14 @@ def test_when_the_last_one_is_done_the_map_is_looked_through_once_more_if_it_has
     assert leaf.status is Status.FAILURE, "nothing has come since"
 
 
-def test_it_looks_again_once_somebody_who_was_at_work_is_silent(robot: FakeRobot) -> None:
+@pytest.mark.parametrize("left", [(), (mate(Doing.PAUSED),)], ids=["silent", "paused"])
+def test_it_looks_again_once_somebody_who_was_at_work_is_gone(
+    robot: FakeRobot, left: tuple[Mate, ...]
+) -> None:
     robot.team.mates = (mate(Doing.AT_WORK), mate(Doing.IDLE, "carl"))
     leaf = waiting(robot)
-    robot.team.mates = (mate(Doing.IDLE, "carl"),)
+    robot.team.mates = (*left, mate(Doing.IDLE, "carl"))
     leaf.tick_once()
     assert leaf.status is Status.SUCCESS
     assert robot.team.doing is Doing.AT_WORK
-    assert leaf.feedback_message == "bob is silent: look again"
+    assert leaf.feedback_message == "bob is silent or paused: look again"

@@ -219,3 +219,17 @@ def test_a_resumed_robot_tells_again_what_it_had_claimed(said: list[Letter]) -> 
     again.speak(3.0)
     bob.link.receive(3.0)
     assert (bob.link.mates[0].claims, bob.link.mates[0].doing) == (((1.0, 2.0),), Doing.IDLE)
+
+
+def test_a_paused_robot_is_seen_standing_with_nothing_claimed_and_nowhere_to_go(said: list[Letter]) -> None:
+    ada, bob = Member("ada", said), Member("bob", said)
+    ada.link.claim([(1.0, 2.0)])
+    ada.link.is_paused = True
+    ada.speak(1.0)
+    bob.link.receive(1.0)
+    seen = bob.link.mates[0]
+    assert (seen.doing, seen.claims, seen.is_parked) == (Doing.PAUSED, (), True)
+    ada.link.is_paused = False
+    ada.speak(1.1)
+    bob.link.receive(1.1)
+    assert (bob.link.mates[0].doing, bob.link.mates[0].claims) == (Doing.AT_WORK, ((1.0, 2.0),))

@@ -261,6 +261,7 @@ class _Robot:
             budgets=(Budget("time", "s", 900.0, 900.0 - stamp_s),),
             charge=1.0 - stamp_s / 3600.0,
             held_by=HeldBy.OBSTACLE if braking else HeldBy.NOTHING,
+            claims=() if self.goal is None else (self.goal.position,),
         )
 
     def _measured(self, stamp_s: float) -> tuple[Measurement, ...]:

@@ -63,7 +63,8 @@ class Driven:
     def tell(self, now_s: float) -> Mate:
         stop = self.gate.stop_places(self.motion, self.pose, DT)
         twist = self.motion.twist
-        return Mate(self.name, now_s, now_s + DT, self.pose, twist, RADIUS, LIMITS.speed_mps, stop, NOWHERE)
+        binding_s = max(now_s + DT, self.gate.stays_until_s)
+        return Mate(self.name, now_s, binding_s, self.pose, twist, RADIUS, LIMITS.speed_mps, stop, NOWHERE)
 
 
 @settings(max_examples=40, deadline=None)
@@ -84,6 +85,38 @@ def test_whatever_three_robots_want_they_never_touch(seed: int, delay: int) -> N
         history.append([robot.told for robot in robots])
         for one, other in itertools.combinations(robots, 2):
             assert one.pose.distance_to(other.pose) >= 2 * RADIUS
+
+
+def test_who_has_told_that_it_stays_stays_and_may_turn() -> None:
+    robot = Driven("a", Pose2(0, 0, 0))
+    robot.gate.stays_until_s = 1.0
+    robot.step(Twist2(0.5, 0.0), [], 0.9)
+    assert (robot.motion.twist.linear_mps, robot.held_by, robot.gate.in_the_way) == (0.0, HeldBy.MATE, "")
+    robot.step(Twist2(0.0, 0.5), [], 0.95)
+    assert robot.motion.twist.angular_rps > 0.0
+    robot.step(Twist2(0.5, 0.0), [], 1.0)
+    assert robot.held_by is HeldBy.NOTHING
+
+
+@pytest.mark.parametrize("lag_s", [0.0, 0.5, 1.0])
+def test_two_side_by_side_do_not_hold_each_other_for_ever_however_slow_words_are(lag_s: float) -> None:
+    """Both want ahead, past one another at 10 cm; the one whose name comes second lets the other pass."""
+    robots = [Driven("a", Pose2(0, 0, 0)), Driven("b", Pose2(1.0, 0.6, math.pi))]
+    floor = open_floor()
+    history = [[robot.told for robot in robots]]
+    for step in range(400):
+        now_s = step * DT
+        heard = history[max(len(history) - 1 - round(lag_s / DT), 0)]
+        for robot, other in ((robots[0], heard[1]), (robots[1], heard[0])):
+            lets_pass = robot.name == "b" and robot.held_by is HeldBy.MATE and robot.gate.in_the_way == "a"
+            if robot.motion == MotionState() and lets_pass:
+                robot.gate.stays_until_s = now_s + lag_s + 0.2
+            robot.gate.see(Surroundings(now_s, np.empty((0, 2)), floor), robot.pose)
+            robot.step(Twist2(0.3, 0.0), [other], now_s)
+        history.append([robot.told for robot in robots])
+        assert robots[0].pose.distance_to(robots[1].pose) >= 2 * RADIUS
+    assert robots[0].pose.x > 2.0
+    assert robots[1].pose.x < -1.0
 
 
 def test_two_head_on_stand_and_name_each_other() -> None:

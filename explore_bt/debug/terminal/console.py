@@ -22,6 +22,7 @@ from explore_bt.debug.commands import (
     RemoveBreakpoint,
     Resume,
     SetParam,
+    Step,
     View,
 )
 from explore_bt.debug.history import History
@@ -83,7 +84,7 @@ class Console:
         self._interrupts = 0
         self._do: Mapping[str, Callable[[str], None]] = {
             "step": lambda rest: self._go(step_of(rest)),
-            "continue": lambda _: self._go(Resume()),
+            "continue": self._continue,
             "pause": self._pause,
             "break": self._break,
             "breaks": self._breaks,
@@ -154,9 +155,12 @@ class Console:
 
     def _go(self, command: Command[None]) -> None:
         self._focus.return_to_present()
-        if self._session.state().over:
+        before = self._session.state()
+        if before.over:
             raise DebugError("the run is over; tree, print, where, map and back still show it")
         self._ask(command)
+        if isinstance(command, Step) and command.robot in before.held and not before.paused:
+            return  # the others have gone on all the time
         if isinstance(command, Resume) and self._reader.is_interactive:
             self._say("running; Ctrl-C pauses, other commands are heard meanwhile")
         self._wait()
@@ -197,9 +201,19 @@ class Console:
         what = "" if state.paused else "pausing; "
         self._say("", f"{what}Ctrl-C once more stops the robots and saves the results")
 
-    def _pause(self, _: str) -> None:
+    def _continue(self, rest: str) -> None:
+        if rest:
+            self._ask(Resume(rest))
+            self._say(f"{rest} goes on")
+        else:
+            self._go(Resume())
+
+    def _pause(self, rest: str) -> None:
         state = self._session.state()
-        if state.paused or state.over:
+        if rest and len(self._focus.robots) > 1 and not state.over:
+            self._ask(Pause(rest))
+            self._say(f"{rest} stands; the others go on. continue {rest} lets it go on")
+        elif state.paused or state.over:
             self._say(*state_lines(state, len(self._focus.robots)))
         else:
             self._ask(Pause())

@@ -49,9 +49,13 @@ def number_of(text: str, what: str) -> int:
 
 
 def step_of(rest: str) -> Step:
-    """``[N] [tick|node|change]`` in any order."""
-    count, kind = 1, StepKind.TICK
-    for word in words_of(rest):
+    """``[N] [tick|node|change] [robot NAME]`` in any order."""
+    count, kind, robot = 1, StepKind.TICK, "*"
+    words = _split(rest)
+    for word in (each.text for each in words):
+        if word == "robot":
+            robot = _next(words, "which robot?")
+            continue
         if word[:1].isdigit():
             count = number_of(word, "a number of steps")
             continue
@@ -59,7 +63,7 @@ def step_of(rest: str) -> Step:
         if name not in list(StepKind):
             raise DebugError(f'there is no step "{word}"; {did_you_mean(name, StepKind, "steps")}')
         kind = StepKind(name)
-    return Step(kind, count)
+    return Step(kind, count, robot)
 
 
 def span_of(rest: str) -> Span:

@@ -27,13 +27,22 @@ class Verb:
 VERBS = (
     Verb(
         "step",
-        "[N] [tick|node|change]",
+        "[N] [tick|node|change] [robot NAME]",
         "go on a tick, to after the next node, or to the next change of a status",
         "s",
-        ("step            one tick", "step 5 node     five nodes", "n 5             the same"),
+        (
+            "step            one tick",
+            "step 5 node     five nodes",
+            "n 5             the same",
+            "step robot ada  one tick of ada: the others stand, or go on if ada alone was paused",
+        ),
     ),
-    Verb("continue", "", "go on to the next breakpoint, or to the end", "c"),
-    Verb("pause", "", "stand still before the next tick; Ctrl-C does it too"),
+    Verb(
+        "continue", "[NAME]", "go on to the next breakpoint, or to the end; or one robot that was paused", "c"
+    ),
+    Verb(
+        "pause", "[NAME]", "stand still before the next tick, as Ctrl-C; or one robot, while the others go on"
+    ),
     Verb(
         "break",
         "PATH [before|after] [STATUS] [ignore N] [once] [robot NAME] [if EXPRESSION]",

@@ -72,6 +72,8 @@ def state_lines(state: DebugState, robots: int) -> Iterator[Text]:
         yield Text.assemble(("over ", "bold"), f"at {when}: {state.why}")
         return
     yield Text.assemble(("paused " if state.paused else "running ", "bold"), f"at {when}: {state.why}")
+    if state.held:
+        yield Text(f"  {', '.join(state.held)} stands while the others go on", "yellow")
     if state.paused and not state.is_simulated:
         yield Text("  time goes on: the robots are held, the trees wait", "yellow")
     if state.path:

@@ -72,6 +72,7 @@ class ZenohTeam(Team):
         self._life = time.time_ns()  # of two lives of a robot the later one counts; no decision hangs on it
         settings = self._settings
         session = opened(
+            context.robot,
             settings.mode,
             listen=settings.listen,
             connect=settings.connect,
@@ -129,7 +130,7 @@ class ZenohTeam(Team):
     @classmethod
     def router(cls, listen: Sequence[str]) -> AbstractContextManager[None]:
         """Robots with ``mode: client`` or ``connect`` go to it."""
-        return closing(opened("router", listen=listen))
+        return closing(opened("router", "router", listen=listen))
 
     # --- inside; what zenoh calls comes on its own threads ----------------------------------------------
 

@@ -15,6 +15,11 @@ export function drawBars(page, state, time) {
   byId("play").hidden = live && player.following;
   byId("speeds").hidden = live && player.following;
   setSign(byId("pause"), debug.paused ? "running" : "pause", debug.paused ? "Run" : "Pause");
+  const held = debug.held.includes(page.robot);
+  byId("hold").hidden = page.names.length < 2;
+  setSign(byId("hold"), held ? "running" : "pause", page.robot);
+  byId("hold").setAttribute("aria-pressed", String(held));
+  for (const each of byId("robots").children) each.classList.toggle("held", debug.held.includes(each.dataset.name));
   byId("live").setAttribute("aria-pressed", String(player.following));
   document.body.classList.toggle("past", live && !player.following);
   for (const each of byId("run-controls").querySelectorAll("button")) each.disabled = debug.over;
@@ -31,7 +36,8 @@ export function drawBars(page, state, time) {
 }
 
 function setSign(button, name, words) {
-  if (button.dataset.sign === name) return;
-  button.dataset.sign = name;
+  const sign = `${name} ${words}`;
+  if (button.dataset.sign === sign) return;
+  button.dataset.sign = sign;
   button.replaceChildren(glyph(name), make("span", {}, words));
 }

@@ -4,6 +4,7 @@ import { make } from "./dom.js";
 
 export const KEYS = [
   ["space", "pause or run; in a recording, play or hold"],
+  ["p", "pause or run the chosen robot alone, of several"],
   ["n", "to the next tick"], ["N", "to the end of the next node (in a recording, the next change)"],
   ["c", "to the next change of a status"], ["b", "a tick back"], ["C", "to the change before"],
   ["← →", "a second back or on; with shift, ten"],

@@ -4,7 +4,7 @@ import { flat } from "./run_state.js";
 
 export const LAYERS = {
   scan: "Scan", driven: "Driven path", path: "Planned path", waypoints: "Waypoints", sectors: "Free sectors",
-  "half-planes": "Half-planes", frontiers: "Frontiers", views: "Views", people: "People", robots: "Other robots", truth: "True pose",
+  "half-planes": "Half-planes", frontiers: "Frontiers", views: "Views", people: "People", claims: "Claims", robots: "Other robots", maps: "Their maps", truth: "True pose",
 };
 
 const MOST_POSES = 4000;
@@ -23,6 +23,7 @@ export function drawLayers(map) {
   if (layers.has("views")) (drawing.views ?? []).forEach((each) => view(map, each));
   if (layers.has("path")) planned(map, picked.state.newest.path);
   if (layers.has("waypoints")) waypoints(map, picked.state);
+  if (layers.has("claims")) shown.forEach((robot) => (robot.state.newest.team?.claims ?? []).forEach((each) => claim(map, robot, each)));
   if (layers.has("people")) (picked.state.newest.moving?.things ?? []).forEach((each) => person(map, each));
   if (layers.has("truth")) shown.forEach((robot) => body(map, robot, flat(robot.state.newest.truth?.pose), true));
   shown.forEach((robot) => body(map, robot, flat(robot.state.newest.pose?.pose), false));
@@ -185,6 +186,17 @@ function view({ pen, at, palette, spots }, each) {
   pen.arc(x, y, 3, 0, 2 * Math.PI);
   if (each.state === "rejected") pen.stroke(); else pen.fill();
   spots.push({ x, y, words: judged(each, `view${each.gain_m2 ? `, ${each.gain_m2.toFixed(1)} m² to see` : ""}`) });
+}
+
+/** Where a robot goes to look: a ring in its colour, as its team knows it. */
+function claim({ pen, at, palette, spots }, robot, place) {
+  const [x, y] = at(...place);
+  pen.strokeStyle = palette[robot.colour];
+  pen.lineWidth = 2;
+  pen.beginPath();
+  pen.arc(x, y, 8, 0, 2 * Math.PI);
+  pen.stroke();
+  spots.push({ x, y, words: `claimed by ${robot.name}` });
 }
 
 /** What was decided about a mark, and why. */

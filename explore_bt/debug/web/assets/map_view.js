@@ -22,7 +22,7 @@ export function gridOf(message) {
 
 /** Draws everything in `map` frame; metres to pixels by centre and scale. */
 export class MapView {
-  layers = new Set(["scan", "driven", "path", "waypoints", "sectors", "half-planes", "frontiers", "views", "people", "robots"]);
+  layers = new Set(["scan", "driven", "path", "waypoints", "sectors", "half-planes", "frontiers", "views", "people", "claims", "robots", "maps"]);
   follow = false;
   spots = [];
 
@@ -94,9 +94,11 @@ export class MapView {
     const scene = this.#scene, picked = scene?.robots.find((robot) => robot.name === scene.picked);
     if (!picked || !width) return;
     const grid = gridOf(picked.state.newest.map), pose = flat(picked.state.newest.pose?.pose);
-    this.#place(grid, pose, width, height);
+    const others = this.layers.has("maps") ? scene.robots.filter((robot) => robot !== picked && gridOf(robot.state.newest.map)) : [];
+    const drawn = [...others, ...(grid ? [picked] : [])].map((robot) => [robot.name, gridOf(robot.state.newest.map)]);
+    this.#place(drawn.map(([, each]) => each), pose, width, height);
     if (!this.#view) return;
-    if (grid) this.#drawGrid(pen, grid, picked.name);
+    for (const [name, each] of drawn) this.#drawGrid(pen, each, name);
     this.spots = [];
     drawLayers({
       pen, scene, picked, palette: this.#palette, layers: this.layers, spots: this.spots, time: scene.time, scale: this.#view.scale,
@@ -105,13 +107,15 @@ export class MapView {
     this.#drawScale(pen, height);
   }
 
-  #place(grid, pose, width, height) {
+  /** All maps in view, until somebody has moved or zoomed. */
+  #place(drawn, pose, width, height) {
     if (this.follow && pose && this.#view) Object.assign(this.#view, { x: pose.x, y: pose.y });
-    if (this.#view && (this.#touched || !grid)) return;
-    if (!grid) { if (pose) this.#view = { x: pose.x, y: pose.y, scale: 50 }; return; }
-    const wide = grid.cols * grid.size, high = grid.rows * grid.size;
-    const scale = 0.92 * Math.min(width / wide, height / high);
-    this.#view = { x: grid.x + wide / 2, y: grid.y + high / 2, scale };
+    if (this.#view && (this.#touched || !drawn.length)) return;
+    if (!drawn.length) { if (pose) this.#view = { x: pose.x, y: pose.y, scale: 50 }; return; }
+    const left = Math.min(...drawn.map((each) => each.x)), low = Math.min(...drawn.map((each) => each.y));
+    const wide = Math.max(...drawn.map((each) => each.x + each.cols * each.size)) - left;
+    const high = Math.max(...drawn.map((each) => each.y + each.rows * each.size)) - low;
+    this.#view = { x: left + wide / 2, y: low + high / 2, scale: 0.92 * Math.min(width / wide, height / high) };
   }
 
   #drawGrid(pen, grid, name) {
@@ -130,7 +134,7 @@ export class MapView {
     Object.assign(canvas, { width: grid.cols, height: grid.rows });
     const pen = canvas.getContext("2d"), image = pen.createImageData(grid.cols, grid.rows);
     const pixels = new Uint32Array(image.data.buffer);
-    const [unknown, free, wall] = [this.#palette.unknown, this.#palette.free, this.#palette.wall].map(packed);
+    const [free, wall] = [this.#palette.free, this.#palette.wall].map(packed), unknown = 0;  // what lies beneath shows through
     for (let row = 0; row < grid.rows; row++) {
       const from = row * grid.cols, to = (grid.rows - 1 - row) * grid.cols;
       for (let col = 0; col < grid.cols; col++) {

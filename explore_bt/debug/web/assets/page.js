@@ -16,7 +16,7 @@ import { TreeView } from "./tree_view.js";
 
 const COLOURS = 6;
 const RATES = [1, 4, 16];
-const NOTHING = { paused: false, over: false, path: "", moment: "", breakpoints: [], forced: [], params: [], why: "" };
+const NOTHING = { paused: false, over: false, held: [], path: "", moment: "", breakpoints: [], forced: [], params: [], why: "" };
 
 class Page {
   run = null;
@@ -45,6 +45,7 @@ class Page {
     this.link = new Link((news) => this.#hear(news), (open) => this.#onLink(open));
   }
 
+  get names() { return this.#names; }
   get live() { return this.player?.live ?? false; }
   get nodes() { return this.run.trees[this.robot]; }
 
@@ -198,10 +199,17 @@ class Page {
     this.command({ do: this.debug.paused ? "Resume" : "Pause" });
   }
 
+  /** One robot of several stands, and the others go on. */
+  hold() {
+    if (!this.live || this.#names.length < 2) return;
+    this.command({ do: this.debug.held.includes(this.robot) ? "Resume" : "Pause", robot: this.robot });
+  }
+
   step(kind) {
     if (this.live) {
       if (!this.player.following) this.player.toNow();
-      return this.command({ do: "Step", kind });
+      const alone = this.debug.held.includes(this.robot) && !this.debug.paused;
+      return this.command({ do: "Step", kind, robot: alone ? this.robot : "*" });
     }
     if (kind === "tick") this.seek(this.#tickFrom(true));
     else { const next = this.story.changeFrom(this.robot, this.player.time, true); if (next !== null) this.seek(next); }
@@ -310,6 +318,7 @@ class Page {
   #wire() {
     const on = (id, action) => { byId(id).onclick = action; };
     on("pause", () => { if (!this.player.following) this.player.toNow(); this.command({ do: this.debug.paused ? "Resume" : "Pause" }); });
+    on("hold", () => this.hold());
     on("step-tick", () => this.step("tick"));
     on("step-node", () => this.step("node"));
     on("step-change", () => this.step("change"));
@@ -365,7 +374,7 @@ class Page {
     const by = (seconds) => () => this.player && this.seek(this.player.time + seconds);
     const ready = (action) => () => this.player && action();
     return {
-      " ": ready(() => this.pause()), n: ready(() => this.step("tick")), N: ready(() => this.step("node")), c: ready(() => this.step("change")),
+      " ": ready(() => this.pause()), p: ready(() => this.hold()), n: ready(() => this.step("tick")), N: ready(() => this.step("node")), c: ready(() => this.step("change")),
       b: ready(() => this.back("tick")), C: ready(() => this.back("change")),
       ArrowLeft: by(-1), ArrowRight: by(1), ShiftArrowLeft: by(-10), ShiftArrowRight: by(10),
       Home: ready(() => this.seek(this.player.begin)), End: ready(() => this.player.toNow()),
