@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from explore_bt.fleet.team_map import TeamMap
-from explore_bt.interfaces import API_VERSION, Allocator, Offers, PluginOptions, RobotContext
+from explore_bt.interfaces import API_VERSION, Allocator, MateFrame, Offers, PluginOptions, RobotContext
 from explore_bt.types import Doing, MapFit, Mate, OccupancyGrid, Pose2, Scan2D
 
 __all__ = ["Alone", "Everything"]
@@ -49,6 +49,10 @@ class Alone:
     def chart(self, mate: str) -> MapFit | None:  # noqa: ARG002  # as of ``TeamLink``
         """Nobody else draws."""
         return None
+
+    def frames(self) -> tuple[MateFrame, ...]:
+        """Nobody was heard."""
+        return ()
 
     def not_merged(self) -> Mapping[str, str]:
         """Nobody is left out."""

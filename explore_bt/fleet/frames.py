@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from explore_bt.fleet.graph_messages import Fits
 from explore_bt.fleet.messages import Presence
-from explore_bt.interfaces import GraphShare
+from explore_bt.interfaces import GraphShare, MateFrame
 from explore_bt.types import MapFit, Pose2
 
 __all__ = ["SAME", "Frames"]
@@ -97,6 +97,15 @@ class Frames:
             return None if mate is None else mate.fit
         return self.way(name)
 
+    def known(self, merged: AbstractSet[str]) -> tuple[MateFrame, ...]:
+        """For observers: everybody who was heard, and where their maps lie."""
+        return tuple(self._known(name, name in merged) for name in sorted(self._mates))
+
+    def _known(self, name: str, is_merged: bool) -> MateFrame:
+        way, is_drawn = self.way(name), is_merged and self.chart(name) is not None
+        T = None if way is None else _rounded(_about(way))
+        return MateFrame(name, T, "" if is_drawn else self._reason(name))
+
     def refuse(self, name: str, why: str) -> None:
         """Something speaks against what is believed about a mate."""
         mate = self._mates[name]
@@ -148,3 +157,8 @@ def _about(fit: MapFit) -> Pose2:
     """``T_ours_theirs`` about where the mate was last."""
     x, y, _ = fit.theirs[-1].tolist()
     return fit.at_theirs(x, y)
+
+
+def _rounded(pose: Pose2) -> Pose2:
+    """So that it is not news with every keyframe."""
+    return Pose2(round(pose.x, 2), round(pose.y, 2), round(pose.yaw_rad, 3))

@@ -16,7 +16,7 @@ from explore_bt.fleet.messages import Message, MessageError, Presence, decode, e
 from explore_bt.fleet.roster import Roster
 from explore_bt.fleet.team_map import TeamMap
 from explore_bt.fleet.tiles import TileCutter
-from explore_bt.interfaces import Allocator, RobotContext, Slam, Team
+from explore_bt.interfaces import Allocator, MateFrame, RobotContext, Slam, Team
 from explore_bt.types import (
     Doing,
     MapFit,
@@ -147,6 +147,10 @@ class TeamLink:
     def chart(self, mate: str) -> MapFit | None:
         """How a mate's map lies in one's own; None if it is not merged with it."""
         return self._merger.frames.chart(mate)
+
+    def frames(self) -> tuple[MateFrame, ...]:
+        """For observers: everybody who was heard, and where their maps lie."""
+        return self._merger.known
 
     def not_merged(self) -> Mapping[str, str]:
         """The mates whose maps are not merged with one's own, with the reason."""

@@ -11,7 +11,7 @@ from explore_bt.fleet.graph_messages import Fits
 from explore_bt.fleet.graph_teller import GraphTeller
 from explore_bt.fleet.messages import Presence, Tile
 from explore_bt.fleet.team_map import TeamMap
-from explore_bt.interfaces import RobotContext, Slam
+from explore_bt.interfaces import MateFrame, RobotContext, Slam
 from explore_bt.types import MapFit, Mate, Pose2, Scan2D, SharedKeyframe, SharedStretch
 
 __all__ = ["Merger"]
@@ -46,6 +46,11 @@ class Merger:
         self._turn = 0
         self.knows_start = context.knows_start
         self.frames = Frames(context.knows_start, self._share, tell)
+
+    @property
+    def known(self) -> tuple[MateFrame, ...]:
+        """For observers: everybody who was heard, and where their maps lie."""
+        return self.frames.known(self._passed)
 
     @property
     def shares_graph(self) -> bool:

@@ -19,6 +19,7 @@ from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.slam import Slam
 from explore_bt.interfaces.snapshot import (
     Event,
+    MateFrame,
     NodeInfo,
     NodeState,
     PortInfo,
@@ -50,6 +51,7 @@ __all__ = [
     "Letter",
     "MapMemory",
     "MapView",
+    "MateFrame",
     "NodeInfo",
     "NodeState",
     "Offers",

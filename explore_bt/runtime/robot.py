@@ -356,6 +356,7 @@ class Robot:
             charge=self._purse.charge,
             doing=self.team.doing,
             claims=self.team.claims,
+            mates=self.team.frames(),
         )
 
     def tell(self, level: str, source: str, message: str) -> None:
