@@ -25,8 +25,8 @@ __all__ = ["Fleet", "Track", "apart_m", "doubly_claimed_s", "free_port", "runnin
 
 _MAIN = "from explore_bt.cli import main; main()"
 _LOOK_S = 0.02
-_SAME_M = 0.5
-"""Claims nearer than this are for the same place: two robots cannot stand there."""
+_SAME_M = 0.2
+"""Claims nearer than this are for the same view."""
 _WATCHER = '''\
 """Writes down what everybody needs who compares several processes: with the time of the machine."""
 

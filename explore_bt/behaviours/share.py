@@ -15,8 +15,8 @@ from explore_bt.types import Doing, Mate
 __all__ = ["allotted", "claimed_before", "claims_of_others", "free_at", "workers"]
 
 _SAME_M = 1.0
-_SAME_PLACE_M = 0.5
-"""Two cannot stand at places so near; places on two sides of a wall are farther apart."""
+_SAME_VIEW_M = 0.1
+"""What two places show that are so near is the same: to give one up leads to another view, not back to it."""
 
 
 def workers(robot: RobotServices) -> list[Mate]:
@@ -52,9 +52,7 @@ def claimed_before(robot: RobotServices, place: tuple[float, float]) -> str:
     if not robot.team.allocator.heeds_claims:
         return ""
     for mate in workers(robot):
-        if mate.name < robot.team.name and any(
-            math.dist(place, each) < _SAME_PLACE_M for each in mate.claims
-        ):
+        if mate.name < robot.team.name and any(math.dist(place, each) < _SAME_VIEW_M for each in mate.claims):
             return mate.name
     return ""
 

@@ -199,7 +199,7 @@ class TeamLink:
         )
         if self.is_paused:
             told = replace(told, ahead=np.empty((0, 2)))
-        self._say(PRESENCE, PRESENCE, encode(told))
+        self._say(PRESENCE, PRESENCE, encode(told), often=True)
         if not self._team.shares_clock and now_s - self._compared_s > _CLOCKS_PERIOD_S - 1e-6:
             self._compared_s = now_s
             self._say(CLOCKS, CLOCKS, encode(self._ages.tell()))
@@ -258,8 +258,9 @@ class TeamLink:
             return stamp_s
         return self._now_s - self._ages.bound_s(sender, stamp_s, self._now_s)
 
-    def _say(self, kind: str, topic: str, payload: bytes) -> None:
-        self._team.say(topic, payload)
+    def _say(self, kind: str, topic: str, payload: bytes, *, often: bool = False) -> None:
+        say = self._team.say_often if often else self._team.say
+        say(topic, payload)
         self._sent[kind] += len(payload)
         self._allowance -= len(payload)
 

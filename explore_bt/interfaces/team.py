@@ -56,6 +56,10 @@ class Team(Plugin):
     def say(self, topic: str, payload: bytes) -> None:
         """Replace what this robot says on a topic. Never blocks, never raises for want of a network."""
 
+    def say_often(self, topic: str, payload: bytes) -> None:
+        """As ``say``, of what is said anew all the time: one such word that is lost is not missed."""
+        self.say(topic, payload)
+
     @abstractmethod
     def hear(self) -> Sequence[Letter]:
         """News since the last call: of each robot's topics at least the newest, in order. Never blocks."""

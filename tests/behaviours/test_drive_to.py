@@ -241,7 +241,7 @@ def test_a_goal_that_is_seen_is_driven_to_while_a_place_on_the_way_is_not() -> N
 
 @pytest.mark.parametrize(
     ("name", "claimed", "goes_on"),
-    [("ada", (4.0, 0.3), False), ("ada", (4.0, 0.6), True), ("zoe", (4.0, 0.0), True)],
+    [("ada", (4.0, 0.05), False), ("ada", (4.0, 0.3), True), ("zoe", (4.0, 0.0), True)],
     ids=["goes first", "goes elsewhere", "goes second"],
 )
 def test_a_goal_that_a_mate_has_claimed_at_the_same_time_is_left_to_the_one_that_goes_first(

@@ -10,6 +10,7 @@ from explore_bt_teams import LocalTeam, ZenohOptions, ZenohTeam
 from explore_bt_teams.inbox import Inbox
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from explore_bt.clock import WallClock
 from explore_bt.errors import PluginError
@@ -74,6 +75,20 @@ def test_clients_hear_one_another_through_a_router_and_again_once_it_has_come_ba
                 found |= {letter.topic: letter.payload for letter in bob.hear()}
                 clock.wait_until(clock.now_s() + 0.1)
     assert found == {"presence": b"still here", "tile/0/0": b"said to nobody"}
+
+
+def test_udp_is_refused_for_it_loses_who_wants_to_hear_whom() -> None:
+    with pytest.raises(ValidationError, match=r"a robot stays deaf; write tcp/127.0.0.1:7447"):
+        ZenohOptions(listen=("udp/127.0.0.1:7447",))
+
+
+def test_nobody_is_asked_for_words_that_are_said_often_and_an_old_one_does_not_come_late() -> None:
+    inbox = Inbox()
+    for number in (1, 5, 3):
+        inbox.put(Letter("a", "presence", b"%d" % number), 1, number, is_counted=False)
+    inbox.put(Letter("a", "tile/0/0", b"first"), 1, 1)
+    assert {letter.payload for letter in inbox.drain()} == {b"5", b"first"}
+    assert inbox.missing(10.0) == []
 
 
 def test_a_team_of_one_process_has_no_router() -> None:

@@ -44,8 +44,11 @@ class Inbox:
         self._senders: dict[str, _Sender] = {}
         self._fresh: dict[tuple[str, str], Letter] = {}
 
-    def put(self, letter: Letter, life: int, number: int) -> None:
-        """A word has come: the ``number``-th of that life of its speaker."""
+    def put(self, letter: Letter, life: int, number: int, *, is_counted: bool = True) -> None:
+        """A word has come: the ``number``-th of that life of its speaker.
+
+        Those that are not counted have numbers of their own, and nobody is asked for them.
+        """
         with self._lock:
             sender = self._senders.get(letter.sender)
             if sender is None or life > sender.life:
@@ -53,7 +56,7 @@ class Inbox:
             if life < sender.life:
                 return
             self._came += 1
-            if number > sender.whole and len(sender.later) < _MOST_KEPT:
+            if is_counted and number > sender.whole and len(sender.later) < _MOST_KEPT:
                 sender.later.add(number)
                 _advance(sender)
             if number > sender.newest.get(letter.topic, 0):

@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, closing
 from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import API_VERSION, Letter, PluginOptions, RobotContext, Team
@@ -22,6 +22,8 @@ __all__ = ["ZenohOptions", "ZenohTeam"]
 
 _HEAD = struct.Struct("<QQ")
 """Life of the speaker (when it joined, nanoseconds), and the number of the word in that life."""
+_OFTEN = 1 << 63
+"""Added to the numbers of words that are said anew all the time; they are counted by themselves."""
 _WHOLE = "whole"
 """Ends an answer: these were the numbers of its words, and that was all up to its own."""
 _NAME_TIMEOUT_S = 1.0
@@ -36,13 +38,24 @@ class ZenohOptions(TeamOptions):
     listen: tuple[str, ...] = Field((), description="endpoints to be reached at; tcp/127.0.0.1:0 stays here")
     multicast: bool = Field(True, description="look for peers on the local network")
 
+    @model_validator(mode="after")
+    def _loses_nothing(self) -> ZenohOptions:
+        for name, endpoints in (("connect", self.connect), ("listen", self.listen)):
+            if lossy := [endpoint for endpoint in endpoints if endpoint.startswith("udp/")]:
+                raise ValueError(
+                    f"{name}: {lossy[0]}: over UDP it may be lost who wants to hear whom, and a robot stays "
+                    f"deaf; write tcp/{lossy[0].removeprefix('udp/')}"
+                )
+        return self
+
 
 class ZenohTeam(Team):
     """Peers that find one another, or clients of a router.
 
     Words are put and may be dropped. Each bears its number; whoever hears a gap asks that robot for all it
     has said since, which is the newest of each topic, until nothing of an answer is missing. So do late
-    joiners, and both sides of a partition that has healed.
+    joiners, and both sides of a partition that has healed. Words that are said anew all the time are asked
+    for by nobody.
     """
 
     name = "zenoh"
@@ -56,7 +69,8 @@ class ZenohTeam(Team):
         self._session: Any = None
         self._lock = threading.Lock()
         self._said: dict[str, tuple[int, bytes]] = {}
-        self._count = 0
+        self._count = self._often_count = 0
+        self._publishers: dict[str, Any] = {}
         self._inbox = Inbox()
         self._robot = self._prefix = ""
         self._life = 0
@@ -103,11 +117,31 @@ class ZenohTeam(Team):
             self._count += 1
             word = _HEAD.pack(self._life, self._count) + payload
             self._said[topic] = (self._count, word)
+        drop = self._zenoh.CongestionControl.DROP
         try:
-            drop = self._zenoh.CongestionControl.DROP
             session.put(f"{self._prefix}/{self._robot}/{topic}", word, congestion_control=drop)
         except self._zenoh.ZError:
             self._inbox.failed += 1  # it is in ``_said``: who misses it asks
+
+    def say_often(self, topic: str, payload: bytes) -> None:
+        """Put, and not asked for if it is lost."""
+        session = self._session
+        if session is None:
+            return
+        with self._lock:
+            self._often_count += 1
+            word = _HEAD.pack(self._life, self._often_count | _OFTEN) + payload
+            self._said[topic] = (self._often_count | _OFTEN, word)
+        try:
+            if topic not in self._publishers:
+                self._publishers[topic] = session.declare_publisher(
+                    f"{self._prefix}/{self._robot}/{topic}",
+                    congestion_control=self._zenoh.CongestionControl.DROP,
+                    reliability=self._zenoh.Reliability.BEST_EFFORT,
+                )
+            self._publishers[topic].put(word)
+        except self._zenoh.ZError:
+            self._inbox.failed += 1
 
     def hear(self) -> Sequence[Letter]:
         """What has come; and asks for what is missing."""
@@ -120,6 +154,7 @@ class ZenohTeam(Team):
     def close(self) -> None:
         """Leave."""
         session, self._session = self._session, None
+        self._publishers.clear()
         if session is not None:
             session.close()
 
@@ -162,7 +197,7 @@ class ZenohTeam(Team):
             count = self._count
         for topic, _, word in words:
             query.reply(f"{own}/{topic}", word)
-        numbers = np.array([number for _, number, _ in words], dtype="<u8")
+        numbers = np.array([number for _, number, _ in words if not number & _OFTEN], dtype="<u8")
         query.reply(f"{own}/{_WHOLE}", _HEAD.pack(self._life, count) + numbers.tobytes())
 
     def _take(self, sample: Any) -> None:
@@ -175,7 +210,8 @@ class ZenohTeam(Team):
             told = np.frombuffer(word[_HEAD.size :][: (len(word) - _HEAD.size) // 8 * 8], dtype="<u8")
             self._inbox.answered(sender, life, number, told.tolist())
             return
-        self._inbox.put(Letter(sender, topic, word[_HEAD.size :]), life, number)
+        letter = Letter(sender, topic, word[_HEAD.size :])
+        self._inbox.put(letter, life, number & ~_OFTEN, is_counted=not number & _OFTEN)
 
     def _take_reply(self, reply: Any) -> None:
         if reply.ok is not None:
@@ -184,6 +220,15 @@ class ZenohTeam(Team):
     def _ask(self, sender: str, since: int) -> None:
         selector = f"{self._prefix}/{sender}/**?since={since}"
         try:
-            self._session.get(selector, self._take_reply, timeout=_ASK_TIMEOUT_S, target=self._all)
+            drop = (
+                self._zenoh.CongestionControl.DROP
+            )  # it is asked again, and must not hold up the control loop
+            self._session.get(
+                selector,
+                self._take_reply,
+                timeout=_ASK_TIMEOUT_S,
+                target=self._all,
+                congestion_control=drop,
+            )
         except self._zenoh.ZError:
             self._inbox.failed += 1
