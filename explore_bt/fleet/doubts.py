@@ -23,6 +23,8 @@ _FAR_M = 3.5
 _BEYOND_M = 0.3
 _SCANS = 15
 _LEAST_BEAMS = 3
+_LATE_S, _LATE_M = 1.0, 0.1
+"""A word that is older, or since which the mate has driven farther, does not say where it is now."""
 
 
 def quarrel(own: OccupancyGrid, mosaic: Mosaic) -> str:
@@ -34,7 +36,10 @@ def quarrel(own: OccupancyGrid, mosaic: Mosaic) -> str:
     """
     against = both = 0
     for place in mosaic.places:
-        theirs, ours = mosaic.drawn(place), cut_tile(own, place, first_cell(own))
+        ours = cut_tile(own, place, first_cell(own))
+        if (ours == UNKNOWN).all():
+            continue
+        theirs = mosaic.drawn(place)
         known = (theirs != UNKNOWN) & (ours != UNKNOWN)
         walls = known & ((theirs == OCCUPIED) | (ours == OCCUPIED))
         both += int(np.count_nonzero(walls))
@@ -71,6 +76,9 @@ class Unseen:
         """
         found = {}
         for mate in mates:
+            late_s = abs(scan.stamp_s - mate.stamp_s)
+            if late_s > _LATE_S or late_s * abs(mate.twist.linear_mps) > _LATE_M:
+                continue
             verdict = _is_there(scan, pose, mate, radius_m)
             if verdict is not None:
                 self._counts[mate.name] = 0 if verdict else self._counts.get(mate.name, 0) + 1

@@ -27,6 +27,7 @@ class _Mate:
         is_told: its start was given, and one's own.
         is_checkable: both tell and take keyframes.
         refused: why its map is not what it seemed; empty while nothing speaks against it.
+        is_doubted: closures speak against its start, though they prove nothing yet.
         fit: what closures say.
         said: what was last told about it.
     """
@@ -34,6 +35,7 @@ class _Mate:
     is_told: bool = False
     is_checkable: bool = False
     refused: str = ""
+    is_doubted: bool = False
     fit: MapFit | None = None
     said: str = ""
 
@@ -79,7 +81,7 @@ class Frames:
         """Ask for what closures say by now."""
         for name, mate in self._mates.items():
             if mate.is_checkable:
-                mate.fit = self._share.fit(name)
+                mate.fit, mate.is_doubted = self._share.fit(name), self._share.doubts(name)
                 if mate.fit is not None:
                     mate.refused = ""
 
@@ -88,7 +90,8 @@ class Frames:
         mate = self._mates.get(name)
         if mate is None:
             return None
-        return mate.fit or (SAME if mate.is_told and not mate.refused else None)
+        is_good = mate.is_told and not mate.refused and not mate.is_doubted
+        return mate.fit or (SAME if is_good else None)
 
     def chart(self, name: str) -> MapFit | None:
         """How the mate's map lies, to be merged with one's own; None: not yet, or not at all."""
@@ -134,6 +137,7 @@ class Frames:
             return mate.refused
         if mate.is_checkable:
             start = "its start is to be checked" if mate.is_told else "nobody has said where it began"
+            start = "its start seems to be wrong" if mate.is_told and mate.is_doubted else start
             return f"{start}; {self._share.why_not(name)}"
         return "nobody has said where it began, and no SLAM of the two finds out"
 

@@ -46,6 +46,10 @@ class GraphShare:
         The same object until it changes; None until then, and again if later places contradict it.
         """
 
+    def doubts(self, mate: str) -> bool:  # noqa: ARG002  # for those that know
+        """Whether what was found so far speaks against what was said, though it proves nothing yet."""
+        return False
+
     def refuse(self, mate: str) -> None:
         """The fit is wrong, whatever the walls say: forget it, and never believe it again."""
 

@@ -18,12 +18,16 @@ class Finder(GraphShare):
         self.can_find = can_find
         self.found: dict[str, MapFit] = {}
         self.expected: dict[str, Pose2] = {}
+        self.doubted: set[str] = set()
 
     def expect(self, mate: str, T_ours_theirs: Pose2) -> None:
         self.expected[mate] = T_ours_theirs
 
     def fit(self, mate: str) -> MapFit | None:
         return self.found.get(mate)
+
+    def doubts(self, mate: str) -> bool:
+        return mate in self.doubted
 
     def refuse(self, mate: str) -> None:
         self.found.pop(mate, None)
@@ -106,6 +110,15 @@ def test_a_start_that_was_given_wrong_is_told_of_with_how_wrong_it_is() -> None:
     ada.share.found["bob"] = MOVED
     ada.hear()
     assert ada.told[-1][2].endswith("closures put the start that was given 2.0 m and 60 deg off")
+
+
+def test_a_start_that_first_closures_speak_against_is_not_driven_by_any_more() -> None:
+    ada = Robot()
+    ada.hear()
+    ada.share.doubted.add("bob")
+    ada.hear()
+    assert ada.frames.way("bob") is None
+    assert ada.frames.why_not()["bob"].startswith("its start seems to be wrong")
 
 
 def test_what_is_refused_is_neither_driven_by_nor_merged_until_closures_say_something_else() -> None:

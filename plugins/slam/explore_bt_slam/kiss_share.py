@@ -75,6 +75,10 @@ class KissShare(GraphShare):
         """See ``GraphShare``."""
         return self._bond(mate).fit(self._back)
 
+    def doubts(self, mate: str) -> bool:
+        """See ``GraphShare``."""
+        return self._bond(mate).is_doubtful
+
     def refuse(self, mate: str) -> None:
         """See ``GraphShare``."""
         self._bond(mate).refuse(self._back)

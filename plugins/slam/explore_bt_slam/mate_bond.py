@@ -33,6 +33,7 @@ _EXTENT_M = 3.5
 _AGREEING_TOLD, _SPAN_TOLD_M = 3, 0.5
 """And where they say what somebody had said: to find that by chance is another matter."""
 _REMEMBERED_M = 40.0
+_AS_TOLD_M, _AS_TOLD_RAD = 0.3, 0.1
 _REFUSED_M, _REFUSED_RAD = 1.0, 0.3
 _LATELY = 24
 _LEAST_POINTS = 40
@@ -44,11 +45,15 @@ class MateBond:
 
     Args:
         number: of the mate among all, from 0.
+
+    Attributes:
+        is_doubtful: two closures agree that the maps do not lie as was said.
     """
 
     def __init__(self, number: int) -> None:
         self._number = number
         self._told: Pose2 | None = None
+        self.is_doubtful = False
         self._wrong: list[MapFit] = []
         self._mate = MateGraph()
         self._search = MateSearch()
@@ -157,6 +162,9 @@ class MateBond:
             self._pending = [e for e in self._pending if back.keyframes[e.b].driven_m >= since_m] + [edge]
             spread = relative_covariances(back.poses, back.edges, newest)
             agreed = largest_consistent(self._pending, back.poses, spread, self._mate.poses)
+            self.is_doubtful = (
+                len(agreed) > 1 and self._told is not None and not self._is_as_told(agreed, back)
+            )
             if self._is_enough(agreed, back):
                 self._decide(agreed, back)
                 return
@@ -188,8 +196,7 @@ class MateBond:
         return MapFit(theirs, np.array(ours))
 
     def _is_enough(self, agreed: Sequence[Edge], back: BackEnd) -> bool:
-        told = None if self._told is None else MapFit.rigid(self._told)
-        is_as_told = told is not None and all(self._says(edge, back, told, 0.3, 0.1) for edge in agreed)
+        is_as_told = self._is_as_told(agreed, back)
         least, span_m = (_AGREEING_TOLD, _SPAN_TOLD_M) if is_as_told else (_AGREEING, _SPAN_M)
         span = max(
             np.ptp([back.keyframes[edge.b].driven_m for edge in agreed]),
@@ -202,6 +209,12 @@ class MateBond:
         is_majority = 2 * len(agreed) > len(self._pending)
         count = max(len({edge.a for edge in agreed}), len({edge.b for edge in agreed}))
         return is_majority and count >= least and span >= span_m
+
+    def _is_as_told(self, agreed: Sequence[Edge], back: BackEnd) -> bool:
+        told = None if self._told is None else MapFit.rigid(self._told)
+        return told is not None and all(
+            self._says(edge, back, told, _AS_TOLD_M, _AS_TOLD_RAD) for edge in agreed
+        )
 
     def _says(
         self,
