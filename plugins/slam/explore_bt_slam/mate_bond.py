@@ -32,7 +32,7 @@ _EXTENT_M = 3.5
 """And, as nobody had said how the maps lie, so far apart: what repeats from room to room shows by then."""
 _AGREEING_TOLD, _SPAN_TOLD_M = 3, 0.5
 """And where they say what somebody had said: to find that by chance is another matter."""
-_REMEMBERED_M = 40.0
+_REMEMBERED = 40
 _AS_TOLD_M, _AS_TOLD_RAD = 0.3, 0.1
 _REFUSED_M, _REFUSED_RAD = 1.0, 0.3
 _LATELY = 24
@@ -154,17 +154,16 @@ class MateBond:
 
     def _weigh(self, back: BackEnd, edges: Sequence[Edge]) -> None:
         """Note closures from the mate's to one's own keyframes; once enough agree the graphs are one."""
+        if not edges:
+            return
+        spread = relative_covariances(back.poses, back.edges, len(back.keyframes) - 1)
         for edge in edges:
             if any(self._says(edge, back, wrong) for wrong in self._wrong):
                 continue
-            newest = len(back.keyframes) - 1
-            since_m = back.keyframes[newest].driven_m - _REMEMBERED_M
-            self._pending = [e for e in self._pending if back.keyframes[e.b].driven_m >= since_m] + [edge]
-            spread = relative_covariances(back.poses, back.edges, newest)
+            self._pending = [*self._pending, edge][-_REMEMBERED:]
             agreed = largest_consistent(self._pending, back.poses, spread, self._mate.poses)
-            self.is_doubtful = (
-                len(agreed) > 1 and self._told is not None and not self._is_as_told(agreed, back)
-            )
+            is_other = self._told is not None and not self._is_as_told(agreed, back)
+            self.is_doubtful = is_other and len(agreed) > 1
             if self._is_enough(agreed, back):
                 self._decide(agreed, back)
                 return
