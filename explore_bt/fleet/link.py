@@ -173,8 +173,8 @@ class TeamLink:
                     self._tell("warning", "team", f"robot {letter.sender} is not understood: {fault}")
                 continue
             self._take(letter.sender, message)
-        self._merger.look(now_s, sorted(self._roster.heard(now_s)))
         self._tell_of_comings()
+        self._merger.look(now_s, sorted(self._present))
 
     def send(self, now_s: float, presence: Callable[[], Presence], grid: OccupancyGrid) -> None:
         """Tell where the robot is, and as many changed tiles as the budget allows.
