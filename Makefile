@@ -4,7 +4,7 @@ BIN := .venv/bin
 ROS := .venv-ros
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq
 
-.PHONY: demo replay test test-ros2 lint types docs bench clean
+.PHONY: demo replay test test-ros2 compiled lint types docs bench clean
 
 demo: .venv/run.done       ## explore a flat nobody has told the robot about
 	@$(BIN)/explore-bt run missions/01_apartment.yaml
@@ -12,16 +12,18 @@ demo: .venv/run.done       ## explore a flat nobody has told the robot about
 replay: .venv/run.done     ## any moment of the newest run, in a browser
 	@$(BIN)/explore-bt replay --open
 
-# a robot in real time cannot wait for its kernels to compile: a simulated one compiles them first;
 # what fails in real time on a machine with other work is tried once more by itself
-test: .venv/dev.done $(ROS)/dev.done  ## every test, lint and type check included
-	@rm -rf .compiled && $(BIN)/explore-bt run 01_apartment --headless --out .compiled >/dev/null
+test: .venv/dev.done compiled  ## every test, lint and type check included
 	@$(ROS)/bin/python -m pytest -n 2 -m "not slow" tests/ros2 \
 	  || $(ROS)/bin/python -m pytest --last-failed -m "not slow" tests/ros2
 	@$(BIN)/python -m pytest -n 2 --ignore tests/ros2
 
-test-ros2: $(ROS)/dev.done  ## all of those against a real ROS 2, the flat explored over topics too
+test-ros2: compiled        ## all of those against a real ROS 2, the flat explored over topics too
 	@$(ROS)/bin/python -m pytest -n 2 tests/ros2
+
+# a robot in real time cannot wait for its kernels to compile: a simulated one compiles them first
+compiled: $(ROS)/dev.done
+	@rm -rf .compiled && $(ROS)/bin/explore-bt run 01_apartment --headless --out .compiled >/dev/null
 
 lint: .venv/dev.done       ## style
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/lint-imports --no-cache
@@ -53,4 +55,4 @@ clean:                     ## forget the environment and what was built
 
 $(ROS)/dev.done: pyproject.toml | $(ROS)/bin/python
 	@echo "installing explore-bt and ROS 2 into $(ROS): about a minute"
-	@$(ROS)/bin/python -m pip --disable-pip-version-check -qq install --editable '.[ros2,ros2-dev]' && touch $@
+	@$(ROS)/bin/python -m pip --disable-pip-version-check -qq install --editable '.[mujoco,ros2,ros2-dev]' && touch $@

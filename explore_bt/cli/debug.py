@@ -17,6 +17,8 @@ import typer
 from explore_bt.cli.driving import (
     GETTING_READY,
     OutOption,
+    PaceOption,
+    RobotOption,
     SeedOption,
     SinkOption,
     VerboseOption,
@@ -46,7 +48,7 @@ if TYPE_CHECKING:
     from explore_bt.interfaces import Sink
     from explore_bt.mission import Mission
     from explore_bt.plugin import Registry
-    from explore_bt.runtime import StopFlag
+    from explore_bt.runtime import Attendant, StopFlag
     from explore_bt.types import Result
 
 __all__ = ["debug"]
@@ -76,6 +78,8 @@ def debug(
     groot_port: GrootPortOption = 1667,
     groot_host: GrootHostOption = "127.0.0.1",
     mock: MockOption = None,
+    robot: RobotOption = None,
+    pace: PaceOption = 1.0,
     verbose: VerboseOption = False,
 ) -> None:
     """Run a mission under a debugger: step, break, look back.
@@ -84,7 +88,7 @@ def debug(
     mission is over ends the page. In the terminal, type help; Ctrl-C pauses, a second one stops the
     robot safely. Results and exit codes are those of explore-bt run.
     """
-    checked, registry = load_checked(mission, set_, mock)
+    checked, registry = load_checked(mission, set_, mock, robot, pace)
     folder = new_run_folder(out, checked.path.stem)
     session = new_session(checked, registry, set_ or (), mock, paused=not run_on)
     sinks = [
@@ -107,13 +111,22 @@ def new_session(
 ) -> DebugSession:
     """A session that stands still before the first tick, if ``paused``, and can change parameters."""
     from explore_bt.debug import DebugSession, Params
-    from explore_bt.mission import load_mission, with_mocks
+    from explore_bt.mission import load_mission, only_robot, with_mocks
 
     def load(again: Sequence[str]) -> Mission:
         read = load_mission(mission.path, registry, again)
+        if mission.solo is not None:
+            read = only_robot(read, mission.solo.robot, mission.solo.pace)
         return read if mocks is None else with_mocks(read, mocks)
 
     return DebugSession(Params(mission, load, settings), paused=paused)
+
+
+def _paced(session: DebugSession, mission: Mission) -> Attendant:
+    """A robot of a fleet that runs elsewhere is held to real time."""
+    from explore_bt.runtime import Attendants, pace_of
+
+    return Attendants([session, pace_of(mission)])
 
 
 def _on_page(
@@ -135,7 +148,7 @@ def _on_page(
         show_page(server, open_it=page.open_it)
         with stopping_by_signal(stop):
             typer.echo(f"{mission.path}, seed {seed}: {GETTING_READY}")
-            result = drive(mission, registry, folder, seed, sinks, stop, session)
+            result = drive(mission, registry, folder, seed, sinks, stop, _paced(session, mission))
         show_result(result, folder)
         if "SIGTERM" not in stop.reason:
             wait_for_ctrl_c("the page stays to look at; Ctrl-C ends it")
@@ -162,7 +175,7 @@ def _in_terminal(
 
     def run() -> None:
         try:
-            ended.set_result(drive(mission, registry, folder, seed, sinks, stop, session))
+            ended.set_result(drive(mission, registry, folder, seed, sinks, stop, _paced(session, mission)))
         except BaseException as fault:  # it is raised again where the command can tell it
             ended.set_exception(fault)
 

@@ -23,6 +23,8 @@ __all__ = [
     "GETTING_READY",
     "HeadlessOption",
     "OutOption",
+    "PaceOption",
+    "RobotOption",
     "SeedOption",
     "SinkOption",
     "VerboseOption",
@@ -37,6 +39,13 @@ SeedOption = Annotated[
 OutOption = Annotated[
     Path | None,
     typer.Option(metavar="DIR", help="Folder for the results, new or empty; else runs/<mission>-<time>."),
+]
+RobotOption = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help="Only this robot; the others run elsewhere (team: zenoh)."),
+]
+PaceOption = Annotated[
+    float, typer.Option(min=0.1, metavar="X", help="With --robot: simulated seconds a second.")
 ]
 SinkOption = Annotated[
     list[str] | None,

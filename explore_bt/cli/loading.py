@@ -35,16 +35,27 @@ MockOption = Annotated[
 
 
 def load_checked(
-    mission: str, settings: Sequence[str] | None, mocks: Path | None = None
+    mission: str,
+    settings: Sequence[str] | None,
+    mocks: Path | None = None,
+    robot: str | None = None,
+    pace: float = 1.0,
 ) -> tuple[Mission, Registry]:
     """Find the mission, load the plugins and the file beside it, check everything.
+
+    Args:
+        mission: what was typed.
+        settings: ``name=value``.
+        mocks: scripts that play leaves.
+        robot: the only one that this process drives; None for all.
+        pace: simulated seconds a second, of that robot.
 
     Raises:
         UserError: no such mission, a broken inline plugin, or the faults of the mission or the mock file, all
             of them.
     """
     path = find_mission(mission)
-    from explore_bt.mission import load_mission, with_mocks
+    from explore_bt.mission import load_mission, only_robot, with_mocks
     from explore_bt.plugin import load_plugins
 
     host = load_plugins(inline_dir=path.parent)
@@ -52,6 +63,8 @@ def load_checked(
         checked = load_mission(path, host.registry, settings or ())
     except MissionError as faulty:
         raise MissionError(str(faulty) + _left_out(faulty, host), faulty.faults) from None
+    if robot is not None:
+        checked = only_robot(checked, robot, pace)
     return (checked if mocks is None else with_mocks(checked, mocks)), host.registry
 
 

@@ -43,46 +43,64 @@ def ros2_sim(
         bool, typer.Option("--wall-time", help="Stamps are the system's time, there is no /clock; speed 1.")
     ] = False,
     stamped: Annotated[bool, typer.Option("--stamped", help="Commands are TwistStamped.")] = False,
+    tf_topic: Annotated[
+        str, typer.Option(help="Else /tf, and of several robots tf in the namespace of each.")
+    ] = "",
     out: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Write at the end what only a simulator knows, as JSON."),
     ] = None,
 ) -> None:
-    """Put a simulated robot behind ROS 2 topics, until Ctrl-C.
+    """Put the simulated robots of a mission behind ROS 2 topics, until Ctrl-C.
 
-    A mission with driver: {use: ros2, use_sim_time: true} then drives it from another process.
+    A mission with driver: {use: ros2, use_sim_time: true} then drives them from another process. Of several
+    robots each has its name as namespace.
     """
     from explore_bt.interfaces import Bridge
     from explore_bt.runtime import StopFlag
 
-    driver, context, registry = _robot(mission, set_, seed)
+    robots, registry = _robots(mission, set_, seed)
     bridge: type[Bridge] = registry.get("bridge", "ros2")
-    settings = {"domain": domain, "namespace": namespace, "wall_time": wall_time, "stamped": stamped}
+    settings = {
+        "domain": domain,
+        "namespace": namespace,
+        "wall_time": wall_time,
+        "stamped": stamped,
+        "tf_topic": tf_topic,
+    }
     served = bridge(bridge.Options.model_validate(settings))
-    typer.echo(f"{driver.name}: getting ready")
-    driver.setup(context)
+    drivers = {context.robot: driver for driver, context in robots}
+    what = ", ".join(dict.fromkeys(driver.name for driver in drivers.values()))
+    typer.echo(f"{what}: getting ready")
     stop = StopFlag()
     try:
+        for driver, context in robots:
+            driver.setup(context)
         with stopping_by_signal(stop, then="the robot brakes"):
             pace = "the system's time" if wall_time else f"/clock at {speed:g} times the speed of real time"
-            typer.echo(f"{driver.name} is on ROS 2, with {pace}; Ctrl-C ends it")
-            served.serve(driver, speed, lambda: stop.is_raised)
+            typer.echo(f"{what} is on ROS 2, with {pace}; Ctrl-C ends it")
+            served.serve(drivers, speed, lambda: stop.is_raised)
     finally:
-        driver.close()
-    truth = _truth(driver)
+        for driver in drivers.values():
+            driver.close()
+    truths = {name: _truth(driver) for name, driver in drivers.items()}
     if out is not None:
-        out.write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
-    contacts, touches = truth["contacts"], truth["touched_by_people"]
-    typer.echo(f"{truth['time_s']:.0f} s: {contacts} contacts, {touches} touches by people")
+        known = truths if len(truths) > 1 else next(iter(truths.values()))
+        out.write_text(json.dumps(known, indent=2) + "\n", encoding="utf-8")
+    for name, truth in truths.items():
+        contacts, touches = truth["contacts"], truth["touched_by_people"]
+        typer.echo(f"{name}: {truth['time_s']:.0f} s, {contacts} contacts, {touches} touches by people")
 
 
-def _robot(mission: str, settings: list[str] | None, seed: int) -> tuple[Driver, RobotContext, Registry]:
-    """The first robot's driver, not set up yet.
+def _robots(
+    mission: str, settings: list[str] | None, seed: int
+) -> tuple[list[tuple[Driver, RobotContext]], Registry]:
+    """The robots' drivers, not set up yet.
 
     Raises:
         UserError: neither mission nor world, or a driver that is no simulator.
     """
-    from explore_bt.interfaces import RobotContext
+    from explore_bt.interfaces import Commons, RobotContext
 
     path = Path(mission)
     if path.is_file() and _WORLD in path.read_text(encoding="utf-8", errors="replace"):
@@ -91,16 +109,19 @@ def _robot(mission: str, settings: list[str] | None, seed: int) -> tuple[Driver,
         registry = load_plugins().registry
         sim2d: type[Driver] = registry.get("driver", "sim2d")
         options: Any = sim2d.Options.model_validate({"world": path.resolve()})
-        return sim2d(options), RobotContext(seed=seed), registry
+        return [(sim2d(options), RobotContext(seed=seed))], registry
     checked, registry = load_checked(str(find_mission(mission)), settings)
-    robot = checked.robots[0]
-    driver = robot.driver.make()
-    if driver.name in ("ros2", "replay"):
-        raise UserError(
-            f"{checked.path}: robot {robot.name}'s driver is {driver.name}; ros2-sim needs a simulator, "
-            "for example driver: {use: sim2d, world: FILE}"
-        )
-    return driver, RobotContext(robot=robot.name, seed=seed, start=robot.start), registry
+    commons, robots = Commons(), []
+    for robot in checked.robots:
+        driver = robot.driver.make()
+        if driver.name in ("ros2", "replay"):
+            raise UserError(
+                f"{checked.path}: robot {robot.name}'s driver is {driver.name}; ros2-sim needs a simulator, "
+                "for example driver: {use: sim2d, world: FILE}"
+            )
+        context = RobotContext(robot=robot.name, seed=seed, start=robot.start, commons=commons)
+        robots.append((driver, context))
+    return robots, registry
 
 
 def _truth(driver: Driver) -> dict[str, Any]:

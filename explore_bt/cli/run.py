@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import typer
 
 from explore_bt.cli.driving import (
     GETTING_READY,
     HeadlessOption,
     OutOption,
+    PaceOption,
+    RobotOption,
     SeedOption,
     SinkOption,
     VerboseOption,
@@ -42,13 +42,8 @@ def run(
     groot_host: GrootHostOption = "127.0.0.1",
     video: VideoOption = None,
     mock: MockOption = None,
-    robot: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="Only this robot; the others run elsewhere (team: zenoh)."),
-    ] = None,
-    pace: Annotated[
-        float, typer.Option(min=0.1, metavar="X", help="With --robot: simulated seconds a second.")
-    ] = 1.0,
+    robot: RobotOption = None,
+    pace: PaceOption = 1.0,
     verbose: VerboseOption = False,
 ) -> None:
     """Run a mission; map, recording and report land in a folder.
@@ -56,11 +51,7 @@ def run(
     Exit code: 0 explored, 1 failed or budget spent, 2 wrong input, 130 stopped by hand.
     Ctrl-C stops the robot safely and saves the results; explore-bt resume goes on from there.
     """
-    checked, registry = load_checked(mission, set_, mock)
-    if robot is not None:
-        from explore_bt.mission import only_robot
-
-        checked = only_robot(checked, robot, pace)
+    checked, registry = load_checked(mission, set_, mock, robot, pace)
     attendants = film_of(checked, video)
     folder = new_run_folder(out, checked.path.stem)
     sinks = watched_sinks(registry, sink or (), headless=headless)

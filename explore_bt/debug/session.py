@@ -122,7 +122,7 @@ class DebugSession(Attendant):
         self._runner = runner
         for robot in runner.robots:
             robot.watch_ticks(_Beside(self))
-        self._show(why="running", is_simulated=runner.is_simulated)
+        self._show(why="running", is_simulated=runner.stands_with_time)
 
     def on_period(self) -> None:
         """Answer what was asked meanwhile."""
@@ -184,15 +184,15 @@ class DebugSession(Attendant):
             status=place.status if place else "",
         )
         begun_s = runner.now_s
-        if not runner.is_simulated:
+        if not runner.stands_with_time:
             self._note(f"the robots are held: {why}")
         while self._pausing and not self._is_to_stop():
-            self._answer_while_paused(_LOOK_UP_S if runner.is_simulated else 0.0)
-            if self._pausing and not runner.is_simulated:
+            self._answer_while_paused(_LOOK_UP_S if runner.stands_with_time else 0.0)
+            if self._pausing and not runner.stands_with_time:
                 runner.hold(f"held by the debugger: {why}")
         if self._pausing:
             self._go_on(Stride())
-        if not runner.is_simulated:
+        if not runner.stands_with_time:
             self._note(f"the robots go on after {runner.now_s - begun_s:.1f} s")
 
     def _is_to_stop(self) -> bool:

@@ -33,6 +33,8 @@ __all__ = ["NEAR_S", "TeamLink"]
 NEAR_S = 2.0
 """Who was heard of so lately is kept clear of by what it told; anybody else as somebody unknown."""
 _CLOCKS_PERIOD_S = 1.0
+_SPARE_S = 0.2
+"""A word is driven by until the next one comes, and one or two may be lost."""
 _RESUMED_MS = 10_000
 """A run that goes on may have to begin up to 5 s before where it broke off: its tiles count as newer all the
 same."""
@@ -121,8 +123,10 @@ class TeamLink:
 
     @property
     def lag_s(self) -> float:
-        """How old words have lately been when heard, at most; 0 alone, or where all have one clock."""
-        return min(self._ages.recent_s, NEAR_S) if self._present else 0.0
+        """How old the words are that are driven by, at most; 0 alone, or where all have one clock."""
+        if self._team.shares_clock or not self._present:
+            return 0.0
+        return min(self._ages.recent_s + _SPARE_S, NEAR_S)
 
     def claim(self, places: Sequence[tuple[float, float]]) -> None:
         """Told with the next presence."""

@@ -1,9 +1,9 @@
-"""Contract of bridges: a simulated robot, as others would meet a real one."""
+"""Contract of bridges: simulated robots, as others would meet real ones."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.plugin import Plugin
@@ -12,7 +12,7 @@ __all__ = ["Bridge"]
 
 
 class Bridge(Plugin):
-    """Puts a driver's robot behind a middleware, in a process of its own.
+    """Puts the robots of simulating drivers behind a middleware, in a process of its own.
 
     Life: ``serve`` once, in the main thread.
     """
@@ -20,12 +20,12 @@ class Bridge(Plugin):
     kind = "bridge"
 
     @abstractmethod
-    def serve(self, driver: Driver, speed: float, is_over: Callable[[], bool]) -> None:
-        """Show what the driver measures, pass on what it is told to do, until it is over.
+    def serve(self, robots: Mapping[str, Driver], speed: float, is_over: Callable[[], bool]) -> None:
+        """Show what the drivers measure, pass on what they are told to do, until it is over.
 
         Args:
-            driver: set up, with a simulated clock, which is waited on here.
-            speed: seconds of its clock per second of real time.
+            robots: by name; set up, with simulated clocks, which are waited on here.
+            speed: seconds of their clocks per second of real time.
             is_over: asked at every step.
 
         Raises:

@@ -71,6 +71,14 @@ class Driver(Plugin):
         return 0.0
 
     @property
+    def command_life_s(self) -> float:
+        """How long a command may drive on before the driver halts the body because no other has come.
+
+        The safety gate has every command end in a stop from there. 0 where the next one always comes in time.
+        """
+        return 0.0
+
+    @property
     @abstractmethod
     def start(self) -> Pose2:
         """Pose of ``base_link`` in ``map`` at set-up: as given, or as the driver chose."""

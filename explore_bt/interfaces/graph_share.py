@@ -38,7 +38,7 @@ class GraphShare:
         """Somebody says that the mate's map lies like this; it is to be checked."""
 
     def look(self) -> None:
-        """Called every control period: look for places that both know; some milliseconds at most."""
+        """Called every control period: look for places that both know; ten milliseconds or so at most."""
 
     def fit(self, mate: str) -> MapFit | None:
         """How the mate's map lies in one's own, once several closures agree.

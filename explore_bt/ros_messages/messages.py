@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from explore_bt.ros_messages.cloud import point_cloud
 from explore_bt.ros_messages.mountings import Places, planar, rotation_of
-from explore_bt.types import Imu, Measurement, Pose2, Scan2D, WheelOdometry
+from explore_bt.types import Imu, Measurement, PointCloud, Pose2, Scan2D, WheelOdometry
 
 __all__ = ["MESSAGES", "TRANSFORMS", "stamp_of"]
 
@@ -65,8 +66,9 @@ def _odometry(message: Any, _: Places, __: float | None) -> WheelOdometry:
     return WheelOdometry(stamp_of(message), Pose2(*place, planar(rotation_of(pose.orientation))))
 
 
-def _cloud(message: Any, mountings: Places, _: float | None) -> Measurement:
-    return point_cloud(message, stamp_of(message), mountings.of(message.header.frame_id))
+def _cloud(message: Any, mountings: Places, range_max_m: float | None) -> PointCloud:
+    cloud = point_cloud(message, stamp_of(message), mountings.of(message.header.frame_id))
+    return cloud if range_max_m is None else replace(cloud, range_max_m=range_max_m)
 
 
 def stamp_of(message: Any) -> float:

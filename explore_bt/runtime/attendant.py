@@ -26,5 +26,8 @@ class Attendant:
     def before_tick(self) -> None:
         """The trees are about to be ticked."""
 
+    def on_hold(self) -> None:
+        """A control period has passed in which all robots were held."""
+
     def end(self) -> None:
         """The run is over, or never began; called once."""

@@ -34,6 +34,11 @@ class Attendants(Attendant):
         for member in self._members:
             member.before_tick()
 
+    def on_hold(self) -> None:
+        """A control period has passed in which all robots were held."""
+        for member in self._members:
+            member.on_hold()
+
     def end(self) -> None:
         """The run is over; all of them hear so, whatever one of them raises."""
         try:

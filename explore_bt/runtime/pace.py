@@ -32,6 +32,10 @@ class Pace(Attendant):
         self._runner, self._begin_s = runner, runner.now_s
         self._clock = WallClock()
 
+    def on_hold(self) -> None:
+        """Also while it is paused: its team is told so all the time."""
+        self.on_period()
+
     def on_period(self) -> None:
         """Let the others come up."""
         if self._runner is not None and self._runner.is_simulated:

@@ -185,10 +185,11 @@ class Pilot:
             estimate: the newest pose.
             scan: the newest scan.
             now_s: the time.
-            dt_s: since the last command; the next may take as long as the longest of late.
+            dt_s: since the last command; the next may take as long as the longest of late, or as the driver
+                lets the last one live.
         """
         self._now_s = now_s
-        self._in_force_s = max(dt_s, FORGET * self._in_force_s)
+        self._in_force_s = max(dt_s, self._driver.command_life_s, FORGET * self._in_force_s)
         now = self.predict(estimate, now_s)
         if self._unseen is not None:
             surroundings, self._unseen = self._unseen, None

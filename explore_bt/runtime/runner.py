@@ -125,6 +125,7 @@ class Runner:
         for robot in self.robots:
             robot.hold(reason, *self._period_of(robot))
         self._advance()
+        self._attendant.on_hold()
         self._held_s += self._dt_s
         if self._is_tick:
             self._show()
@@ -143,6 +144,11 @@ class Runner:
     def is_simulated(self) -> bool:
         """Whether time stands still while nobody waits for it."""
         return all(robot.driver.clock.is_simulated for robot in self.robots)
+
+    @property
+    def stands_with_time(self) -> bool:
+        """Whether time can stand still: not where it is real, nor where the fleet goes on elsewhere."""
+        return self.is_simulated and self._mission.solo is None
 
     @property
     def _is_tick(self) -> bool:

@@ -26,6 +26,9 @@ _FAR_M = 4.0
 _ROOM_M = _MARGIN_M + 0.03
 """A plan passes a mate so far off that the gate will not mind, cells and all."""
 _SLACK_M = 1e-3
+_OFF_SHARE = 0.1
+"""A way leads off if it gains so much of its length in room: the first that a robot at rest can drive is no
+tenth of a millimetre."""
 
 
 def fault_by_mates(
@@ -43,6 +46,7 @@ def fault_by_mates(
         mates: who was heard of lately.
         now_s: on the clock of their stamps.
     """
+    gain_m = min(_SLACK_M, _OFF_SHARE * float(np.hypot(*np.diff(way[:, :2], axis=0).T).sum()))
     for mate in mates:
         late_s = max(now_s - mate.binding_s, 0.0)
         needed_m = radius_m + mate.radius_m + _MARGIN_M + _GROWTH * mate.speed_limit_mps * late_s
@@ -53,7 +57,7 @@ def fault_by_mates(
         worst_m = float(room_m.min())
         if worst_m >= needed_m:
             continue
-        if worst_m < min(needed_m, room_m[0]) - _SLACK_M or room_m[-1] < room_m[0] + _SLACK_M:
+        if worst_m < min(needed_m, room_m[0]) - _SLACK_M or room_m[-1] < room_m[0] + gain_m:
             return f"team mate {mate.name} stops {worst_m - radius_m - mate.radius_m:.2f} m away", mate.name
     return "", ""
 

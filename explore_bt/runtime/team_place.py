@@ -13,10 +13,6 @@ from explore_bt.types import Estimate
 __all__ = ["give_word", "presence_of", "team_place"]
 
 
-_SPARE_S = 0.2
-"""A word is driven by until the next one comes, and one or two may be lost."""
-
-
 def team_place(
     mission: Mission, robot: str, slam: Slam, driver: Driver, tell: Callable[[str, str, str], None]
 ) -> Alone | TeamLink:
@@ -37,7 +33,7 @@ def give_word(pilot: Pilot, team: Alone | TeamLink, now_s: float) -> None:
     a mate that goes first; so of two that are held for one another one gives its word.
     """
     if team.lag_s > 0.0 and pilot.is_at_rest and (not pilot.is_following or _lets_pass(pilot, team)):
-        pilot.stay(now_s + team.lag_s + _SPARE_S)
+        pilot.stay(now_s + team.lag_s)
 
 
 def _lets_pass(pilot: Pilot, team: Alone | TeamLink) -> bool:

@@ -7,6 +7,7 @@ import pytest
 from explore_bt.debug import (
     AddBreakpoint,
     Breakpoint,
+    DebugSession,
     Evaluate,
     Look,
     Pause,
@@ -15,7 +16,9 @@ from explore_bt.debug import (
     StepKind,
 )
 from explore_bt.errors import DebugError
+from explore_bt.mission import only_robot
 from explore_bt.types import Doing, Outcome
+from tests.debug.conftest import Debugged
 from tests.missions.conftest import Watcher
 
 ROBOT = (
@@ -127,3 +130,19 @@ def test_what_cannot_be_done_is_said(run, command, words):
     with pytest.raises(DebugError, match=words):
         run.do(command)
     assert run.do(Evaluate("tick")) == before
+
+
+def test_a_robot_of_a_process_of_its_own_is_held_while_its_fleet_goes_on_elsewhere(load, registry, tmp_path):
+    """Its time cannot stand still: what it tells its team would grow old."""
+    pytest.importorskip("zenoh", reason="eclipse-zenoh is not installed")
+    team = "team: {use: zenoh, multicast: false}\ntree: main"
+    mission = only_robot(load(tree=TREE, head=HEAD.replace("tree: main", team)), "ada", 100.0)
+    run = Debugged(mission, registry, tmp_path / "run", DebugSession(paused=True), [])
+    before = run.rest()
+    assert before.paused
+    assert not before.is_simulated
+    while (now := run.session.state()).stamp_s < before.stamp_s + 1.0:
+        assert now.paused
+    assert ticked(run, "ada") == "idle"
+    run.do(Resume())
+    assert run.finish().outcome is Outcome.EXPLORED

@@ -233,3 +233,16 @@ def test_a_paused_robot_is_seen_standing_with_nothing_claimed_and_nowhere_to_go(
     ada.speak(1.1)
     bob.link.receive(1.1)
     assert (bob.link.mates[0].doing, bob.link.mates[0].claims) == (Doing.AT_WORK, ((1.0, 2.0),))
+
+
+def test_how_old_words_are_is_asked_only_where_there_is_a_network(said: list[Letter]) -> None:
+    """On a cable that takes no time the way back takes a step, and a word is driven by until the next one."""
+    for shares_clock, expected_s in ((True, 0.0), (False, 0.25)):
+        said.clear()
+        ada, bob = (Member(name, said, shares_clock=shares_clock) for name in ("ada", "bob"))
+        assert bob.link.lag_s == 0.0, "it is alone"
+        for step in range(60):
+            for member in (ada, bob):
+                member.speak(0.05 * step)
+                member.link.receive(0.05 * step)
+        assert bob.link.lag_s == pytest.approx(expected_s, abs=1e-6)

@@ -21,10 +21,10 @@ SUITES = {
 }
 
 
-NEIGHBOURS = {"Ros2Map", "Nav2"}
-"""They pass on what another process decides: measurements or a path alone do not make them do what is asked.
+NEIGHBOURS = {"Nav2"}
+"""It passes on what another process decides, in that one's time and by a way of its own: no path drives it.
 
-``tests/ros2`` drives them against such processes.
+``tests/ros2`` drives it against such a process.
 """
 
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from explore_bt_ros2.link import Link
 from explore_bt_ros2.stamps import seconds_of, stamp_message
-from explore_bt_ros2.transforms import Transform, encode
-from geometry_msgs.msg import Twist
+from explore_bt_ros2.transforms import Transform, decode, encode
+from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import Bool
 
@@ -22,6 +24,8 @@ from explore_bt.types import Pose2
 __all__ = ["Relay"]
 
 _SENSOR = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+_PASSED_ON = QoSProfile(depth=10)
+"""Reliable: those who ask for best effort hear it as well."""
 _KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 Spoil = Callable[[Any], list[Any]]
@@ -33,32 +37,48 @@ def passed(message: Any) -> list[Any]:
 
 
 class Relay:
-    """The robot is in the namespace ``real``; the mission's names are the usual ones.
+    """The robot is in the namespace ``real``, tf within it; the mission's names are the usual ones.
+
+    Args:
+        passes_scans: whether it passes scans on; else a node of its own does (``scan_node.py``).
 
     Attributes:
-        scan, odom: what becomes of each message; nothing, or several.
-        commands: time (``time.monotonic``), speed and turn rate of every command.
-        odometry: the robot's own, newest last.
+        scan, odom, tf: what becomes of each message; nothing, or several. Those of tf are ``Transform``.
+        commands: stamp, speed and turn rate of every command, seconds of the ROS clock.
+        odometry: stamp and place of the robot's own, newest last.
     """
 
-    def __init__(self) -> None:
-        self._link = Link("relay")
+    def __init__(self, *, passes_scans: bool = True) -> None:
+        self._link = link = Link("relay")
         self.scan: Spoil = passed
         self.odom: Spoil = passed
+        self.tf: Spoil = passed
         self.commands: list[tuple[float, float, float]] = []
         self.odometry: list[tuple[float, float, float]] = []
+        self._clock_s: float | None = None
         self._moved = threading.Condition()
-        self._scans = self._link.publisher(LaserScan, "scan", _SENSOR)
-        self._odoms = self._link.publisher(Odometry, "odom", _SENSOR)
-        self._imus = self._link.publisher(Imu, "imu", _SENSOR)
-        self._base = self._link.publisher(Twist, "real/cmd_vel", QoSProfile(depth=1))
-        self._emergency = self._link.publisher(Bool, "emergency_stop", QoSProfile(depth=1))
-        self._fixed = self._link.publisher(self._link.tf_type, "/tf_static", _KEPT)
-        self._link.subscribe(LaserScan, "real/scan", self._on_scan, _SENSOR)
-        self._link.subscribe(Odometry, "real/odom", self._on_odom, _SENSOR)
-        self._link.subscribe(Imu, "real/imu", self._imus.publish, _SENSOR, raw=True)
-        self._link.subscribe(Twist, "cmd_vel", self._on_command, QoSProfile(depth=10))
-        self._link.start()
+        self._then: Callable[[], None] | None = None
+        self._then_s = 0.0
+        self._odoms = link.publisher(Odometry, "odom", _PASSED_ON)
+        self._imus = link.publisher(Imu, "imu", _PASSED_ON)
+        self._base = link.publisher(TwistStamped, "real/cmd_vel", QoSProfile(depth=1))
+        self._emergency = link.publisher(Bool, "emergency_stop", QoSProfile(depth=1))
+        self._moving = link.publisher(link.tf_type, "/tf", QoSProfile(depth=100))
+        self._fixed = link.publisher(link.tf_type, "/tf_static", _KEPT)
+        link.subscribe(Clock, "/clock", self._on_clock, _SENSOR)
+        if passes_scans:
+            self._scans = link.publisher(LaserScan, "scan", _PASSED_ON)
+            link.subscribe(LaserScan, "real/scan", self._on_scan, _SENSOR)
+        link.subscribe(Odometry, "real/odom", self._on_odom, _SENSOR)
+        link.subscribe(Imu, "real/imu", self._imus.publish, _SENSOR, raw=True)
+        link.subscribe(link.tf_type, "real/tf", self._on_tf, QoSProfile(depth=100), raw=True)
+        link.subscribe(link.tf_type, "real/tf_static", self._fixed.publish, _KEPT, raw=True)
+        link.subscribe(TwistStamped, "cmd_vel", self._on_command, QoSProfile(depth=10))
+        link.start()
+
+    def now_s(self) -> float:
+        """The ROS clock, seconds: what ``/clock`` said last, or the system's."""
+        return time.time() if self._clock_s is None else self._clock_s
 
     def press(self, pressed: bool) -> None:
         """The emergency stop."""
@@ -76,23 +96,58 @@ class Relay:
             )
         assert moving, f"no command of {at_least_mps} m/s for {deadline_s} s; last: {self.commands[-3:]}"
 
+    def wait_for_rest(self, since_s: float, deadline_s: float) -> bool:
+        """Whether the robot is told to stand, four times in a row after ``since_s``; waits for it."""
+
+        def rests() -> bool:
+            last = self.commands[-4:]
+            return all(sent_s > since_s and (v, w) == (0.0, 0.0) for sent_s, v, w in last)
+
+        with self._moved:
+            return self._moved.wait_for(rests, deadline_s)
+
+    def right_after_a_scan(self, begin: Callable[[], None], deadline_s: float) -> float:
+        """Have ``begin`` called when a scan has just been passed on, the worst moment; when that was.
+
+        Returns:
+            Seconds of the ROS clock.
+        """
+        with self._moved:
+            self._then = begin
+            assert self._moved.wait_for(lambda: self._then is None, deadline_s), "no scan comes"
+        return self._then_s
+
     def close(self) -> None:
         self._link.close()
+
+    def _on_clock(self, message: Any) -> None:
+        self._clock_s = seconds_of(message.clock)
 
     def _on_scan(self, message: Any) -> None:
         for each in self.scan(message):
             self._scans.publish(each)
+        with self._moved:
+            if self._then is not None:
+                self._then()
+                self._then, self._then_s = None, self.now_s()
+                self._moved.notify_all()
 
     def _on_odom(self, message: Any) -> None:
         place = message.pose.pose.position
-        self.odometry.append((time.monotonic(), place.x, place.y))
+        self.odometry.append((seconds_of(message.header.stamp), place.x, place.y))
         for each in self.odom(message):
             self._odoms.publish(each)
+
+    def _on_tf(self, data: bytes) -> None:
+        for each in decode(data):
+            for spoilt in self.tf(each):
+                self._moving.publish(encode([spoilt]))
 
     def _on_command(self, message: Any) -> None:
         self._base.publish(message)
         with self._moved:
-            self.commands.append((time.monotonic(), message.linear.x, message.angular.z))
+            twist = message.twist
+            self.commands.append((seconds_of(message.header.stamp), twist.linear.x, twist.angular.z))
             self._moved.notify_all()
 
 
@@ -144,8 +199,10 @@ def flood(message: Any) -> list[Any]:
 
 
 def jumped(metres: float) -> Spoil:
-    def spoil(message: Any) -> list[Any]:
-        message.pose.pose.position.x += metres
-        return [message]
+    """Of tf: everything ahead of where it was."""
+
+    def spoil(transform: Transform) -> list[Transform]:
+        x, y, z = transform.shift
+        return [replace(transform, shift=(x + metres, y, z))]
 
     return spoil

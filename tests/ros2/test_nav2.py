@@ -23,6 +23,7 @@ from rclpy.qos import QoSProfile
 
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import ControlOutput, ControlStatus, RobotContext
+from explore_bt.testing.controller_contract import require_limits
 from explore_bt.types import Estimate, MotionState, Pose2, Twist2, WheelOdometry
 from explore_bt.types import Path as Way
 from tests.ros2.build_nav2_msgs import build, can_build, preload
@@ -75,6 +76,7 @@ class Robot:
         self.pose = Pose2.identity()
         self.motion = MotionState()
         self.outputs: list[ControlOutput] = []
+        self.motions = [self.motion]
 
     def run(self, until: Callable[[ControlOutput], bool], deadline_s: float) -> ControlOutput:
         """Periods until the output says so."""
@@ -93,6 +95,7 @@ class Robot:
                 (after.linear_mps - before.linear_mps) / DT,
                 (after.angular_rps - before.angular_rps) / DT,
             )
+            self.motions.append(self.motion)
             self.driver.command(after)
             if until(output):
                 return output
@@ -121,13 +124,13 @@ def test_without_the_ros2_driver_it_says_what_to_write():
 
 @pytest.mark.slow
 def test_nav2_is_given_goals_and_cancels_gives_up_dies_and_comes_back(nav2_msgs, hall):
-    robot = Robot(Nav2(Nav2Options(patience=3.0)))
+    robot = Robot(Nav2(Nav2Options()))
     controller = robot.controller
     try:
         controller.follow(way_to(1.0, 0.0))
         away = robot.run(is_over, 8.0)
         assert away.status is ControlStatus.STUCK
-        assert "Nav2's action /navigate_to_pose is not there, for 3 s" in away.reason
+        assert "Nav2's action /navigate_to_pose is not there, for 5 s" in away.reason
 
         with stand_in(nav2_msgs) as server:
             controller.follow(way_to(0.8, 0.2))
@@ -151,9 +154,12 @@ def test_nav2_is_given_goals_and_cancels_gives_up_dies_and_comes_back(nav2_msgs,
             server.kill()
             server.wait()
             robot.run(lambda output: output.twist == Twist2() or abs(output.twist.linear_mps) < 1e-3, 3.0)
+        controller.follow(way_to(1.5, 0.0))  # the network still believes that the dead one is there
+        assert robot.run(is_over, 8.0).reason.startswith("Nav2's action /navigate_to_pose does not answer")
         controller.follow(way_to(1.5, 0.0))
         with stand_in(nav2_msgs):
             assert robot.run(is_over, 20.0).status is ControlStatus.ARRIVED
+        require_limits(robot.motions, robot.driver.limits, [DT] * len(robot.motions))
     finally:
         robot.driver.close()
 

@@ -95,6 +95,8 @@ class Onlooker:
             self._link.subscribe(
                 kind, topic, lambda each, topic=topic: self.heard.update({topic: each}), KEPT
             )
+        self._feedback: dict[str, Any] = {}
+        self._link.subscribe(String, "explore_bt/feedback", self._on_feedback, QoSProfile(depth=10))
         tf = self._link.tf_type
         learn = self.buffer.learn
         self._link.subscribe(tf, "/tf", lambda data: learn(decode(data)), QoSProfile(depth=100), raw=True)
@@ -102,16 +104,28 @@ class Onlooker:
         self._clients = {name: self._link.node.create_client(Trigger, f"explore_bt/{name}") for name in names}
         self._link.start()
 
-    def call(self, name: str) -> str:
+    def call(self, name: str, *, works: bool = True) -> str:
         client = self._clients[name]
         assert client.wait_for_service(10.0), name
         answer = client.call_async(Trigger.Request())
         until(answer.done, 10.0, f"{name} answers")
-        assert answer.result().success
+        assert answer.result().success is works
         return str(answer.result().message)
+
+    def wait_for_feedback(self, state: str, what: str = "time_s") -> dict[str, Any]:
+        """One that says of the mission that it is in this state, and something of ``what``."""
+
+        def is_said() -> bool:
+            return self._feedback.get("state") == state and bool(self._feedback[what])
+
+        until(is_said, 20.0, f"the feedback says {state} and {what}")
+        return self._feedback
 
     def close(self) -> None:
         self._link.close()
+
+    def _on_feedback(self, message: Any) -> None:
+        self._feedback = json.loads(message.data)
 
 
 def test_others_see_the_map_the_way_and_the_tree_and_may_begin_pause_save_and_stop_it(tmp_path):
@@ -129,7 +143,9 @@ def test_others_see_the_map_the_way_and_the_tree_and_may_begin_pause_save_and_st
         ):
             onlooker.call("save_map")
             assert "explore_bt/path" not in onlooker.heard or not onlooker.heard["explore_bt/path"].poses
+            assert onlooker.wait_for_feedback("waiting")["distance_m"] == 0.0
             assert "~/stop" in onlooker.call("explore")
+            assert "it explores already" in onlooker.call("explore", works=False)
             until(
                 lambda: "explore_bt/path" in onlooker.heard and onlooker.heard["explore_bt/path"].poses,
                 30.0,
@@ -138,7 +154,12 @@ def test_others_see_the_map_the_way_and_the_tree_and_may_begin_pause_save_and_st
             until(lambda: len(onlooker.heard["explore_bt/marks"].markers) > 1, 5.0, "marks are shown")
             assert onlooker.buffer.find("map", "base_link") is not None
             assert (run / "map.pgm").is_file()
+            going = onlooker.wait_for_feedback("exploring", "doing")
+            assert going["doing"].startswith("complete")
+            assert going["free_m2"] > 1.0
+            assert going["left"]["time"] > 1000.0
             onlooker.call("pause")
+            assert "paused" in onlooker.wait_for_feedback("paused", "held")["held"]
             until(lambda: _rests(onlooker), 20.0, "it stands")
             onlooker.call("go_on")
             onlooker.call("stop")

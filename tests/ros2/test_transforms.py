@@ -12,7 +12,7 @@ import pytest
 from explore_bt_ros2.transforms.buffer import TransformBuffer
 from explore_bt_ros2.transforms.message import decode, encode
 from explore_bt_ros2.transforms.transform import Transform
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation, Slerp
@@ -56,6 +56,7 @@ def as_rosbags(listed):
     )
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])  # on a machine with other work
 @given(st.lists(transforms(), max_size=4))
 def test_the_bytes_are_those_of_another_implementation(listed):
     theirs = bytes(STORE.serialize_cdr(as_rosbags(listed), KIND, little_endian=True))
@@ -64,6 +65,7 @@ def test_the_bytes_are_those_of_another_implementation(listed):
     assert not any(theirs[len(ours) :])  # padding
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(transforms(), max_size=4), st.booleans())
 def test_bytes_of_another_implementation_are_understood(listed, little):
     data = bytes(STORE.serialize_cdr(as_rosbags(listed), KIND, little_endian=little))

@@ -51,8 +51,16 @@ class Off(StraightOn):
         return ControlOutput(towards(Twist2(0.5, 0.0), motion), ControlStatus.RUNNING)
 
 
+class Steady(StraightOn):
+    """Goes on at 0.2 m/s."""
+
+    def step(self, *_: object) -> ControlOutput:
+        return ControlOutput(Twist2(0.2, 0.0), ControlStatus.RUNNING)
+
+
 class Wheels:
     command_delay_s = 0.0
+    command_life_s = 0.0
     fault: BodyFault | None = None
 
     def command(self, twist: Twist2) -> None:
@@ -190,4 +198,24 @@ def test_a_command_that_may_stay_in_force_for_longer_is_checked_for_as_long(pilo
         raise AssertionError("never held")
 
     longer_m = distance_at_hold(0.25) - distance_at_hold(0.05)
+    assert 0.2 * 0.2 - 0.006 <= longer_m <= 0.2 * 0.2 + 0.006
+
+
+def test_a_command_that_a_driver_lets_live_on_is_checked_for_as_long() -> None:
+    wall = np.array([[0.0, 0.01 * n] for n in range(-60, 61)])
+
+    def distance_at_hold(life_s: float) -> float:
+        """How far from a wall a robot that drives at 0.2 m/s is held."""
+        for x in np.arange(0.6, 0.2, -0.005):
+            wheels = Wheels()
+            wheels.command_life_s = life_s
+            pilot = Pilot(cast(Controller, Steady()), SafetyGate(0.25, LIMITS), cast(Driver, wheels), LIMITS)
+            pilot.motion = MotionState(Twist2(0.2, 0.0))
+            estimate = show(pilot, 0.0, Pose2(0.0, 0.0, 0.0), np.add(wall, [x, 0.0]))
+            pilot.step(estimate, full_circle_scan(), 0.0, DT)
+            if pilot.gate_reason:
+                return float(x)
+        raise AssertionError("never held")
+
+    longer_m = distance_at_hold(DT + 0.2) - distance_at_hold(0.0)
     assert 0.2 * 0.2 - 0.006 <= longer_m <= 0.2 * 0.2 + 0.006

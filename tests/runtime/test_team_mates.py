@@ -151,6 +151,32 @@ def test_who_stands_too_near_may_drive_off_and_not_nearer() -> None:
     away = np.column_stack((np.linspace(0.0, -0.3, 10), np.zeros((10, 2))))
     assert fault_by_mates(away, RADIUS, near, 0.0) == ("", "")
     assert fault_by_mates(-away, RADIUS, near, 0.0)[1] == "bob"
+    assert fault_by_mates(1e-4 * away, RADIUS, near, 0.0) == ("", ""), "from rest, in one control period"
+    assert fault_by_mates(-1e-4 * away, RADIUS, near, 0.0)[1] == "bob"
+
+
+def test_where_words_are_late_one_that_is_too_near_drives_off_from_rest() -> None:
+    """Whatever is told; else two that have come side by side would stand there for good."""
+    robot = Driven("a", Pose2(0, 0, 0))
+    floor = open_floor()
+    for step in range(60):
+        robot.gate.see(Surroundings(step * DT, np.empty((0, 2)), floor), robot.pose)
+        robot.step(
+            Twist2(0.3, 0.0),
+            [mate((-0.55, 0.0), stamp_s=step * DT - 1.0, binding_s=step * DT - 1.0)],
+            step * DT,
+        )
+    assert robot.pose.x > 0.5
+
+
+@pytest.mark.parametrize("bearing_deg", [0, 60, -60])
+def test_from_rest_too_near_a_mate_a_robot_drives_off(bearing_deg: float) -> None:
+    robot = Driven("a", Pose2(-0.54, 0.0, math.pi + math.radians(bearing_deg)))
+    for step in range(60):
+        robot.step(
+            Twist2(0.3, 0.0), [mate((0.0, 0.0), stamp_s=step * DT, binding_s=(step + 1) * DT)], step * DT
+        )
+    assert math.dist(robot.pose.xy, (0.0, 0.0)) > 1.0
 
 
 def test_an_old_word_counts_for_less() -> None:

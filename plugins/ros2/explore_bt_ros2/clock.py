@@ -10,7 +10,8 @@ from explore_bt.clock import Clock
 
 __all__ = ["RosClock", "SimTimeClock", "SystemTimeClock"]
 
-_SILENT_S = 0.25
+_SILENT_S = 0.2
+_POLL_S = 0.02
 
 
 class RosClock(Clock):
@@ -32,6 +33,10 @@ class RosClock(Clock):
     @abstractmethod
     def ros_s(self) -> float:
         """The ROS time now, seconds."""
+
+    @abstractmethod
+    def since_s(self, mission_s: float, monotonic_s: float) -> float:
+        """How long ago a moment is, told by both clocks, for who must not wait for ever where one stands."""
 
     def fault(self) -> str:
         """Why time cannot be told, in words."""
@@ -70,6 +75,10 @@ class SystemTimeClock(RosClock):
     def ros_s(self) -> float:
         """The system's time."""
         return time.time()
+
+    def since_s(self, mission_s: float, monotonic_s: float) -> float:
+        """The longer of both: the system's clock may be set back."""
+        return max(self.now_s() - mission_s, time.monotonic() - monotonic_s)
 
 
 class SimTimeClock(RosClock):
@@ -116,7 +125,7 @@ class SimTimeClock(RosClock):
         """Return at the first tick at or after then."""
         with self._ticked:
             while self._now_s() < time_s:
-                self._ticked.wait(0.05)
+                self._ticked.wait(_POLL_S)
 
     def mission_s(self, ros_s: float) -> float:
         """Mission time of a stamp."""
@@ -129,6 +138,11 @@ class SimTimeClock(RosClock):
     def ros_s(self) -> float:
         """What ``/clock`` said last."""
         return self._newest_s
+
+    def since_s(self, mission_s: float, monotonic_s: float) -> float:
+        """Mission time, at whatever pace it goes; the time of the wall while ``/clock`` is silent."""
+        stands_s = min(self._silent_s(), time.monotonic() - monotonic_s)
+        return max(self.now_s() - mission_s, stands_s)
 
     def fault(self) -> str:
         """That ``/clock`` is silent, and for how long."""

@@ -19,11 +19,13 @@ from explore_bt_ros2.link import Link
 from explore_bt_ros2.options import Ros2Options
 from explore_bt_ros2.stamps import stamp_message
 
-__all__ = ["Commander"]
+__all__ = ["COMMAND_LIFE_S", "Commander"]
 
 _LATE_S = 0.2
 """Four control periods: what was commanded before is not to be driven any more."""
-_CHECK_S = 0.05
+_CHECK_S = 0.02
+COMMAND_LIFE_S = _LATE_S + _CHECK_S
+"""Longer no command drives on."""
 _LAST_WORDS_S = 0.3
 
 
@@ -76,8 +78,7 @@ class Commander:
         with self._lock:
             if self._moving_since is None or self._closed:
                 return
-            mission_s, wall_s = self._moving_since
-            if max(self._clock.now_s() - mission_s, time.monotonic() - wall_s) > _LATE_S:
+            if self._clock.since_s(*self._moving_since) > _LATE_S:
                 self._halt()
 
     def _halt(self) -> None:

@@ -10,10 +10,11 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 
 from explore_bt.errors import PluginError
 from explore_bt.interfaces import API_VERSION, Driver, Finding, PluginOptions, Request, RobotContext, Sink
-from explore_bt.types import Measurement, MotionLimits, Pose2, Twist2
-from explore_bt_ros2.clock import RosClock, SimTimeClock, SystemTimeClock
-from explore_bt_ros2.commander import Commander
+from explore_bt.types import BodyShape, Measurement, MotionLimits, Pose2, Twist2
+from explore_bt_ros2.clock import RosClock, SimTimeClock
+from explore_bt_ros2.commander import COMMAND_LIFE_S, Commander
 from explore_bt_ros2.connection import Connection
+from explore_bt_ros2.crew import Crew
 from explore_bt_ros2.link import Link
 from explore_bt_ros2.options import Ros2Options
 from explore_bt_ros2.outputs import Ros2Outputs
@@ -58,7 +59,7 @@ class Ros2(Driver):
 
         Raises:
             PluginError: ROS 2 cannot be started, no lidar is named, nobody tells the time,
-                or the file of parameters is at fault.
+                the file of parameters is at fault, or two robots are taken for one.
         """
         options = self._options = with_parameters(self._options)
         if not (options.scan_topic or options.cloud_topic):
@@ -66,23 +67,20 @@ class Ros2(Driver):
                 "driver ros2: scan_topic and cloud_topic are both empty; name the lidar's topic"
             )
         begin_s = context.resumed.stamp_s if context.resumed else 0.0
-        clock = (SimTimeClock if options.use_sim_time else SystemTimeClock)(begin_s)
+        crew = Crew.of(context.commons, use_sim_time=options.use_sim_time, begin_s=begin_s)
+        clock = crew.clock
         link = Link("explore_bt", options.namespace, options.domain, options.discovery)
         self._connection = Connection(link, clock, TransformBuffer(), options)
-        if isinstance(clock, SimTimeClock):
-            qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-            link.subscribe(
-                ClockMessage,
-                "/clock",
-                lambda tick: clock.tell(seconds_of(tick.clock)),
-                qos,
-            )
+        command_topic = link.full_name(options.command_topic)
+        is_first = crew.join(context.robot, command_topic, has_start=context.start is not None)
+        if isinstance(clock, SimTimeClock) and is_first:
+            _follow(clock, link)
         self._senses = Senses(link, options, clock, self._connection.buffer)
         self._commander = Commander(link, options, clock)
         self._start = context.start or Pose2.identity()
         if options.outputs:
             self._services = Services(link, waits=options.start_when_asked)
-            self._outputs = (Ros2Outputs(self._connection, context.robot),)
+            self._outputs = (Ros2Outputs(self._connection, self._services, context.robot),)
         link.start()
         if isinstance(clock, SimTimeClock) and not clock.wait_for_first(_CLOCK_TIMEOUT_S):
             self.close()
@@ -110,9 +108,19 @@ class Ros2(Driver):
         return self._options.command_delay
 
     @property
+    def command_life_s(self) -> float:
+        """Until the zero that is sent where no other command comes."""
+        return COMMAND_LIFE_S
+
+    @property
     def footprint_radius_m(self) -> float:
         """As the options say."""
         return self._options.radius
+
+    @property
+    def shape(self) -> BodyShape:
+        """As the options say."""
+        return self._options.shape
 
     @property
     def limits(self) -> MotionLimits:
@@ -161,3 +169,9 @@ class Ros2(Driver):
             self._commander.close()
         if self._connection:
             self._connection.link.close()
+
+
+def _follow(clock: SimTimeClock, link: Link) -> None:
+    """Have the clock told what ``/clock`` says."""
+    qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    link.subscribe(ClockMessage, "/clock", lambda tick: clock.tell(seconds_of(tick.clock)), qos)

@@ -117,11 +117,8 @@ class Nav2(Controller):
             return ControlStatus.ARRIVED, ""
         if state is GoalState.FAILED:
             return ControlStatus.STUCK, words
-        if state is GoalState.AWAY:
-            if goal.is_there:  # the server has come back and knows nothing of the goal
-                self._send()
-            return self._patient(words)
-        if not goal.is_taken:
+        if state is GoalState.AWAY or not goal.is_taken:
+            goal.insist()
             return self._patient(words)
         if goal.knows_arrival or not self._is_quiet:
             self._quiet_since_s = None

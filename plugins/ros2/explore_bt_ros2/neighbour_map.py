@@ -45,7 +45,9 @@ class Ros2MapOptions(PluginOptions):
 
     map_topic: str = Field("map", description="OccupancyGrid of the SLAM on the robot")
     latched: bool = Field(True, description="the map is kept for those who come late (transient local)")
-    tf_timeout: Duration = Field(2.0, gt=0, description="map → odom on tf may be so old")
+    tf_timeout: Duration = Field(
+        2.0, gt=0, description="map → odom on tf, and the newest scan, may be so old"
+    )
 
 
 class Ros2Map(Slam):
@@ -65,6 +67,7 @@ class Ros2Map(Slam):
         self._pose = Pose2.identity()
         self._stamp_s = 0.0
         self._heard_s = 0.0
+        self._scan_s: float | None = None
         self._fault = ""
         self._doubt_until_s = 0.0
         self._has_map = self._has_pose = False
@@ -94,6 +97,12 @@ class Ros2Map(Slam):
         """At every scan, look the robot's place up on tf."""
         self._heard_s = max(self._heard_s, measurement.stamp_s)
         if isinstance(measurement, Scan2D | PointCloud):
+            if self._scan_s is not None and measurement.stamp_s <= self._scan_s:
+                self._fault = (
+                    f"a scan is {self._scan_s - measurement.stamp_s:.2f} s older than the one before"
+                )
+                return
+            self._scan_s = measurement.stamp_s
             begun = time.perf_counter()
             self._take_pose(measurement.stamp_s)
             self._take_map()
@@ -101,7 +110,7 @@ class Ros2Map(Slam):
 
     def estimate(self) -> Estimate:
         """The neighbour's pose; ``lost`` while it is silent, or has just moved the robot far."""
-        reason = self._fault
+        reason = self._fault or self._blindness()
         if not reason and self._heard_s < self._doubt_until_s:
             reason = "the neighbour's pose has just jumped"
         if not (reason or self._has_map):
@@ -207,6 +216,10 @@ class Ros2Map(Slam):
         if age_s <= self._settings.tf_timeout:
             return ""
         return f"tf {options.map_frame} → {options.base_frame} is {age_s:.1f} s old: does the SLAM still run?"
+
+    def _blindness(self) -> str:
+        silent_s = 0.0 if self._scan_s is None else self._heard_s - self._scan_s
+        return f"no scan for {silent_s:.1f} s" if silent_s > self._settings.tf_timeout else ""
 
     def _untied(self) -> str:
         assert self._connection is not None

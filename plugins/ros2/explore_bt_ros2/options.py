@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from explore_bt.interfaces import PluginOptions
-from explore_bt.types import MotionLimits
+from explore_bt.types import BodyShape, MotionLimits
 from explore_bt.units import (
     Acceleration,
     AngularAcceleration,
@@ -38,12 +38,19 @@ class Ros2Options(PluginOptions):
 
     scan_topic: str = Field("scan", description="LaserScan")
     cloud_topic: str = Field("", description="PointCloud2, with a time field per point if possible")
+    cloud_range: Length | None = Field(
+        None, gt=0.0, description="farther away a 3D lidar sees nothing; none: what the clouds show"
+    )
     imu_topic: str = Field("imu", description="Imu")
     odom_topic: str = Field("odom", description="Odometry; empty: tf from odom_frame to base_frame")
     colour_topic: str = Field("", description="Image, its CameraInfo beside it")
     depth_topic: str = Field("", description="Image of depth, registered to colour")
     battery_topic: str = Field("battery_state", description="BatteryState")
     emergency_topic: str = Field("emergency_stop", description="Bool; true holds the robot")
+    tf_topic: str = Field(
+        "/tf",
+        description="TFMessage; those that stay are on the same name with _static; tf: in the namespace",
+    )
     command_topic: str = Field("cmd_vel", description="where commands go")
     stamped: bool = Field(False, description="commands are TwistStamped, as Nav2's may be")
     reliability: Literal["best_effort", "reliable"] = Field(
@@ -55,6 +62,9 @@ class Ros2Options(PluginOptions):
     map_frame: str = Field("map", description="the frame that the map is published in")
 
     radius: Length = Field(0.25, ge=0.05, le=2.0, description="radius of the circular footprint")
+    height: Length = Field(1.0, ge=0.05, le=5.0, description="of the whole body, where the lidar is a 3D one")
+    step: Length = Field(0.05, ge=0.0, le=0.5, description="what is lower is driven over, there")
+    base_height: Length = Field(0.0, ge=0.0, le=2.0, description="of base_frame above the floor, there")
     speed: Speed = Field(0.5, ge=0.01, le=5.0, description="largest speed of the body")
     acceleration: Acceleration = Field(0.5, ge=0.01, le=20.0, description="largest acceleration")
     jerk: Jerk = Field(2.0, ge=0.01, le=500.0, description="largest jerk")
@@ -66,10 +76,15 @@ class Ros2Options(PluginOptions):
     )
 
     silence: Duration = Field(
-        0.25, gt=0.0, le=2.0, description="a topic silent for so long stops the robot; 2.5 turns of the lidar"
+        0.22, gt=0.0, le=2.0, description="a topic silent for so long stops the robot; 2.2 turns of the lidar"
     )
     outputs: bool = Field(True, description="publish map, path, marks, diagnostics; offer the services")
     start_when_asked: bool = Field(False, description="begin when someone calls the service explore")
+
+    @property
+    def shape(self) -> BodyShape:
+        """What passes under and over what."""
+        return BodyShape(self.height, self.step, self.base_height)
 
     @property
     def limits(self) -> MotionLimits:

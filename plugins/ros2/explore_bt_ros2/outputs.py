@@ -26,8 +26,10 @@ from explore_bt.interfaces import (
 )
 from explore_bt.types import Health, OccupancyGrid, Path, Pose2, Result
 from explore_bt_ros2.connection import Connection
+from explore_bt_ros2.feedback import feedback_of
 from explore_bt_ros2.grids import grid_message
 from explore_bt_ros2.marks import marks_of
+from explore_bt_ros2.services import Services
 from explore_bt_ros2.stamps import stamp_message
 from explore_bt_ros2.transforms import Transform, encode
 
@@ -39,7 +41,7 @@ _SLOW_PERIOD_S = 1.0
 
 
 class Ros2Outputs(Sink):
-    """Map, tf map → odom, pose, path, marks, diagnostics, the tree's state, the result.
+    """Map, tf map → odom, pose, path, marks, diagnostics, the tree's state, feedback and result.
 
     The driver brings it along; it is in no mission file. Map and tf are left to a neighbour's SLAM where
     there is one.
@@ -49,20 +51,22 @@ class Ros2Outputs(Sink):
     api_version = API_VERSION
     Options: ClassVar[type[PluginOptions]] = PluginOptions
 
-    def __init__(self, connection: Connection, robot: str) -> None:
+    def __init__(self, connection: Connection, services: Services, robot: str) -> None:
         super().__init__(PluginOptions())
         self._connection = connection
+        self._services = services
         self._robot = robot
         self._nodes: tuple[NodeInfo, ...] = ()
         self._shown: dict[str, object] = {}
         self._due_s: dict[str, float] = {}
         link = connection.link
-        self._tf = link.publisher(link.tf_type, "/tf", QoSProfile(depth=100))
+        self._tf = link.publisher(link.tf_type, connection.options.tf_topic, QoSProfile(depth=100))
         self._map = link.publisher(GridMessage, "map", _KEPT)
         self._pose = link.publisher(PoseWithCovarianceStamped, "~/pose", QoSProfile(depth=10))
         self._path = link.publisher(PathMessage, "~/path", _KEPT)
         self._marks = link.publisher(MarkerArray, "~/marks", _KEPT)
         self._tree = link.publisher(String, "~/tree", _KEPT)
+        self._feedback = link.publisher(String, "~/feedback", QoSProfile(depth=10))
         self._result = link.publisher(String, "~/result", _KEPT)
         self._diagnostics = link.publisher(DiagnosticArray, "/diagnostics", QoSProfile(depth=10))
 
@@ -89,9 +93,12 @@ class Ros2Outputs(Sink):
         if tick.stamp_s >= self._due_s.get("diagnostics", -math.inf):
             self._due_s["diagnostics"] = tick.stamp_s + _SLOW_PERIOD_S
             self._show_diagnostics(robot, stamp)
+            feedback = feedback_of(self._services.state, self._nodes, robot, tick.stamp_s)
+            self._feedback.publish(String(data=json.dumps(feedback)))
 
     def close(self, result: Result | None) -> None:
-        """Publish how it ended, and the last map; they stay as long as the process."""
+        """Publish how it ended; that and the last map stay as long as the process."""
+        self._services.end()
         if result is not None:
             self._result.publish(String(data=json.dumps(result.as_dict())))
 

@@ -16,10 +16,12 @@ from explore_bt_ros2.stamps import seconds_of
 
 __all__ = ["survey"]
 
-_SLOWEST_LIDAR_HZ = 4.0
+_LEAST_TURNS, _TURNS = 1.2, 2.2
+"""Of the lidar in ``silence``: with fewer the robot stops of itself; with so many one may be lost."""
 _LATE_S = 0.3
 _POLL_S = 0.1
 _OPTIONAL = "not needed; name its topic if the robot has one"
+_TF = "tf2_msgs/msg/TFMessage"
 _STAMPED = "geometry_msgs/msg/TwistStamped"
 
 
@@ -85,9 +87,9 @@ def _topic(
     if len(speakers) > 1:
         words.append(f"{len(speakers)} publishers")
     faults = [refused[topic.name]] if topic.name in refused else []
-    if topic.needed and rate_hz < _SLOWEST_LIDAR_HZ:
-        slow = 2.5 / max(rate_hz, 0.1)
-        faults.append(f"{rate_hz:.1f} Hz is slow for driving: set silence: {slow:.1f} s and a low speed")
+    if topic.needed and rate_hz * connection.options.silence < _LEAST_TURNS:
+        slow = _TURNS / max(rate_hz, 0.1)
+        faults.append(f"{rate_hz:.1f} Hz is slow for driving: set silence: {slow:.2f} s and a low speed")
     if topic.needed and float(np.median(delays_s)) > _LATE_S:
         faults.append("its messages come late")
     return Finding(topic.name, ", ".join(words), bool(faults), "; ".join(faults))
@@ -100,12 +102,22 @@ def _transforms(connection: Connection) -> Iterator[Finding]:
     if stamp_s is None:
         needed = not options.odom_topic
         frames = ", ".join(buffer.frames()) or "none"
-        yield Finding(
-            name, f"missing; frames on tf: {frames}", needed, "name odom_topic" if needed else _OPTIONAL
-        )
+        other = _other_tf(connection)
+        named = f"driver: {{tf_topic: {other}}}" if other else "name odom_topic"
+        hint = named if needed or other else _OPTIONAL
+        yield Finding(name, f"missing; frames on {options.tf_topic}: {frames}", needed, hint)
     else:
         age_s = connection.clock.now_s() - connection.clock.mission_s(stamp_s)
         yield Finding(name, f"{1e3 * max(age_s, 0.0):.0f} ms old" if np.isfinite(stamp_s) else "fixed")
+
+
+def _other_tf(connection: Connection) -> str:
+    """Another topic on which somebody tells transforms that move; empty if there is none."""
+    ours = connection.link.full_name(connection.options.tf_topic)
+    node = connection.link.node
+    names = [name for name, kinds in node.get_topic_names_and_types() if _TF in kinds]
+    others = [name for name in names if name != ours and not name.endswith("_static")]
+    return next((name for name in others if node.count_publishers(name)), "")
 
 
 def _commands(connection: Connection) -> Finding:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,9 +21,11 @@ class Places:
     Args:
         buffer: what tf said.
         base_frame: of the robot.
+        world_frames: in which the robot moves: what hangs in them is not on the robot.
     """
 
-    def __init__(self, buffer: TransformBuffer, base_frame: str) -> None:
+    def __init__(self, buffer: TransformBuffer, base_frame: str, world_frames: Sequence[str] = ()) -> None:
+        self._world = world_frames
         self._buffer = buffer
         self._base = base_frame
         self._known: dict[str, NDArray[np.float64]] = {}
@@ -30,7 +34,7 @@ class Places:
         """(4, 4) float64 ``T_base_sensor``.
 
         Raises:
-            ValueError: nothing ties the frame to the base, or it has jumped.
+            ValueError: nothing ties the frame to the base, it is not on the robot, or it has jumped.
         """
         now = self.known(frame)
         if now is None:
@@ -39,6 +43,8 @@ class Places:
                 f'nothing on tf ties its frame "{frame}" to {self._base}; frames on tf: {heard}; type ros2 '
                 f"run tf2_ros static_transform_publisher --frame-id {self._base} --child-frame-id {frame}"
             )
+        if self._buffer.meeting(self._base, frame) in self._world:
+            raise ValueError(f'its frame "{frame}" is not on the robot: the robot moves in it')
         first = self._known.setdefault(frame, now)
         if first is not now:
             off = np.linalg.inv(first) @ now

@@ -35,6 +35,8 @@ _DOUBT_S = 2.0
 _DEPTH = 50
 _POLL_S = 0.02
 
+_CLOUD = MESSAGES["sensor_msgs/msg/PointCloud2"]
+
 Decode = Callable[[Any], Measurement | None]
 
 
@@ -53,7 +55,7 @@ class Senses:
         self._options = options
         self._clock = clock
         self._buffer = buffer
-        self._places = Places(buffer, options.base_frame)
+        self._places = Places(buffer, options.base_frame, (options.odom_frame, options.map_frame))
         self._order: Order[Any] = Order()
         self._newest_s: dict[str, float] = {}
         self._smooth = SmoothOdometry(options.limits)
@@ -130,9 +132,10 @@ class Senses:
             QoSProfile(depth=100),
             QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL),
         )
-        self._link.subscribe(tf, "/tf", lambda data: self._buffer.learn(decode(data)), moving, raw=True)
+        learn, learn_fixed = self._buffer.learn, self._buffer.learn_fixed
+        self._link.subscribe(tf, options.tf_topic, lambda data: learn(decode(data)), moving, raw=True)
         self._link.subscribe(
-            tf, "/tf_static", lambda data: self._buffer.learn_fixed(decode(data)), fixed, raw=True
+            tf, f"{options.tf_topic}_static", lambda data: learn_fixed(decode(data)), fixed, raw=True
         )
 
     def _hear_camera(self) -> None:
@@ -179,6 +182,7 @@ class Senses:
                 topic.refuse(str(fault))
                 continue
             topic.accept(arrived_s)
+            self._link.mismatches.pop(topic.name, None)  # somebody whom we hear is there as well
             if isinstance(measured, WheelOdometry):
                 measured, jump = self._smooth.take(measured)
                 if jump:
@@ -210,7 +214,7 @@ class Senses:
         return replace(measured, stamp_s=min(stamp_s, arrived_s))
 
     def _measure(self, of: Callable[..., Measurement], message: Any) -> Measurement:
-        return of(message, self._places, None)
+        return of(message, self._places, self._options.cloud_range if of is _CLOUD else None)
 
     def _battery(self, message: Any) -> Measurement | None:
         charge = float(message.percentage)

@@ -80,6 +80,12 @@ class TransformBuffer:
             stamps_s = [self._moving[link][-1].stamp_s for link in links if link not in self._fixed]
             return min(stamps_s, default=_NEWEST)
 
+    def meeting(self, one: str, other: str) -> str | None:
+        """The lowest frame above both, or one of them; None if they hang in no common tree."""
+        with self._lock:
+            above = self._chain(_plain(other))
+            return next((frame for frame in self._chain(_plain(one)) if frame in above), None)
+
     def _way_up(self, frame: str, stamp_s: float) -> dict[str, NDArray[np.float64]]:
         """Frame -> (4, 4) ``T_frame_start``, from the start upwards."""
         T = np.eye(4)

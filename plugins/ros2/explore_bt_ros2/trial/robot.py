@@ -32,11 +32,15 @@ class TrialRobot:
     Args:
         link: to the others.
         ros_s: from the driver's time to the ROS time of stamps.
+        tf_topic: of what moves; what stays is on the same name with ``_static``.
         stamped: commands are ``TwistStamped``.
     """
 
-    def __init__(self, link: Link, ros_s: Callable[[float], float], *, stamped: bool = False) -> None:
+    def __init__(
+        self, link: Link, ros_s: Callable[[float], float], tf_topic: str = "/tf", *, stamped: bool = False
+    ) -> None:
         self._link = link
+        self._tf_topic = tf_topic
         self._ros_s = ros_s
         self._publishers: dict[str, Any] = {}
         self._places: dict[str, Transform] = {}
@@ -68,7 +72,7 @@ class TrialRobot:
             self._publish("odom", Odometry, odometry(measured, self._ros_s, _BASE))
             stamp_s = self._ros_s(measured.stamp_s)
             moved = Transform.planar(stamp_s, _ODOM, _BASE, measured.T_odom_base)
-            self._publish("/tf", self._link.tf_type, encode([moved]), QoSProfile(depth=100))
+            self._publish(self._tf_topic, self._link.tf_type, encode([moved]), QoSProfile(depth=100))
         elif isinstance(measured, Battery):
             self._publish("battery_state", BatteryState, battery(measured, self._ros_s))
         elif isinstance(measured, RgbdFrame):
@@ -82,7 +86,8 @@ class TrialRobot:
         if T is None or measured.frame in self._places or measured.frame == _BASE:
             return
         self._places[measured.frame] = Transform.of_matrix(0.0, _BASE, measured.frame, T)
-        self._publish("/tf_static", self._link.tf_type, encode(self._places.values()), _KEPT)
+        fixed = encode(self._places.values())
+        self._publish(f"{self._tf_topic}_static", self._link.tf_type, fixed, _KEPT)
 
     def _publish(self, topic: str, kind: Any, message: Any, qos: QoSProfile = _SENSOR) -> None:
         if topic not in self._publishers:
