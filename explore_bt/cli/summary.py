@@ -25,6 +25,7 @@ def summary_lines(result: Result, folder: Path) -> list[tuple[str, str]]:
         lines.append(("dry run", f"leaves that a script played: {len(result.mocked)}; no figure counts"))
     lines += [("reason", result.reason)] if result.reason else []
     lines += [("left open", sentence) for sentence in _first(result.left_open)]
+    lines += [("not merged", sentence) for sentence in _first(result.not_merged)]
     lines += [(label, str(path)) for label, name in _FILES for path in _files(folder, name)]
     lines += (
         [("replay", f"explore-bt replay {shlex.quote(str(folder))}")] if _files(folder, RECORDING) else []

@@ -54,7 +54,7 @@ def uses(before: Mission, after: Mission) -> list[Use]:
 
 
 def _of_robot(before: RobotSpec, after: RobotSpec) -> Iterator[Use]:
-    for field, key in (("start", "start"), ("saved_map", "map")):
+    for field, key in (("start", "start"), ("knows_start", "start"), ("saved_map", "map")):
         if getattr(before, field) != getattr(after, field):
             yield Use(f"{key} of robot {before.name}", before.name)
     for kind in ("driver", "slam", "planner", "controller"):

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from explore_bt.fleet.team_map import TeamMap
-from explore_bt.interfaces import API_VERSION, Allocator, Offers, PluginOptions, RobotContext
-from explore_bt.types import Doing, Mate, OccupancyGrid
+from explore_bt.interfaces import API_VERSION, Allocator, MateFrame, Offers, PluginOptions, RobotContext
+from explore_bt.types import Doing, MapFit, Mate, OccupancyGrid, Pose2, Scan2D
 
 __all__ = ["Alone", "Everything"]
 
@@ -45,6 +45,21 @@ class Alone:
 
     def setup(self, context: RobotContext, team_map: TeamMap) -> None:
         """Nothing to join."""
+
+    def chart(self, mate: str) -> MapFit | None:  # noqa: ARG002  # as of ``TeamLink``
+        """Nobody else draws."""
+        return None
+
+    def frames(self) -> tuple[MateFrame, ...]:
+        """Nobody was heard."""
+        return ()
+
+    def not_merged(self) -> Mapping[str, str]:
+        """Nobody is left out."""
+        return {}
+
+    def see(self, scan: Scan2D, pose: Pose2) -> None:
+        """Nobody is looked for."""
 
     def receive(self, now_s: float) -> None:
         """Nobody speaks."""

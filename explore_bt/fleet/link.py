@@ -10,12 +10,23 @@ from typing import cast
 import numpy as np
 
 from explore_bt.fleet.clocks import Clocks, WordAges
-from explore_bt.fleet.messages import MessageError, Presence, Tile, decode, encode
+from explore_bt.fleet.graph_messages import Fits
+from explore_bt.fleet.merger import Merger
+from explore_bt.fleet.messages import Message, MessageError, Presence, decode, encode
 from explore_bt.fleet.roster import Roster
 from explore_bt.fleet.team_map import TeamMap
 from explore_bt.fleet.tiles import TileCutter
-from explore_bt.interfaces import Allocator, RobotContext, Slam, Team
-from explore_bt.types import Doing, Mate, OccupancyGrid
+from explore_bt.interfaces import Allocator, MateFrame, RobotContext, Slam, Team
+from explore_bt.types import (
+    Doing,
+    MapFit,
+    Mate,
+    OccupancyGrid,
+    Pose2,
+    Scan2D,
+    SharedKeyframe,
+    SharedStretch,
+)
 
 __all__ = ["NEAR_S", "TeamLink"]
 
@@ -30,7 +41,7 @@ same."""
 _TILES_PERIOD_S = 0.5
 _BURST_S = 2.0
 _INSISTS = -1
-PRESENCE, TILE, CLOCKS = "presence", "tile", "clocks"
+PRESENCE, TILE, CLOCKS, GRAPH = "presence", "tile", "clocks", "graph"
 
 
 class TeamLink:
@@ -42,6 +53,7 @@ class TeamLink:
         allocator: divides the work.
         slam: whose map is told.
         tell: takes level, source and message of an event.
+        sees_mates: whether scans show them.
 
     Attributes:
         is_paused: it stands until somebody lets it go on: it tells neither claims nor a way ahead.
@@ -54,6 +66,7 @@ class TeamLink:
         allocator: Allocator,
         slam: Slam,
         tell: Callable[[str, str, str], None],
+        sees_mates: bool = True,
     ) -> None:
         self.name = name
         self.allocator = allocator
@@ -65,8 +78,9 @@ class TeamLink:
         self._compared_s = -_CLOCKS_PERIOD_S
         self._revision_base = 0
         self._cutter = TileCutter()
-        self._map = TeamMap(slam)
-        self._queue: dict[tuple[int, int], Tile] = {}
+        self._merger = Merger(slam, TeamMap(slam), RobotContext(), tell)
+        self._sees_mates = sees_mates
+        self._queue: dict[str, tuple[str, Message]] = {}
         self._cut_revision = -1
         self._cut_s = -_TILES_PERIOD_S
         self._allowance = self._filled_s = 0.0
@@ -77,7 +91,7 @@ class TeamLink:
         self._insists_until_s = -1.0
         self._strangers: set[str] = set()
         self._present: frozenset[str] = frozenset()
-        self._sent = {PRESENCE: 0, TILE: 0, CLOCKS: 0}
+        self._sent = {PRESENCE: 0, TILE: 0, CLOCKS: 0, GRAPH: 0}
         self._began_s: float | None = None
 
     # --- TeamServices ---------------------------------------------------------------------------------
@@ -130,9 +144,26 @@ class TeamLink:
 
     def setup(self, context: RobotContext, team_map: TeamMap) -> None:
         """Join; what others see goes into ``team_map``."""
-        self._map = team_map
+        self._merger = Merger(self._slam, team_map, context, self._tell)
         self._revision_base = _RESUMED_MS * (context.resumed.part - 1) if context.resumed else 0
         self._team.setup(context)
+
+    def chart(self, mate: str) -> MapFit | None:
+        """How a mate's map lies in one's own; None if it is not merged with it."""
+        return self._merger.frames.chart(mate)
+
+    def frames(self) -> tuple[MateFrame, ...]:
+        """For observers: everybody who was heard, and where their maps lie."""
+        return self._merger.known
+
+    def not_merged(self) -> Mapping[str, str]:
+        """The mates whose maps are not merged with one's own, with the reason."""
+        return self._merger.frames.why_not()
+
+    def see(self, scan: Scan2D, pose: Pose2) -> None:
+        """A scan in which mates are seen where they say they are, or are not; ``pose`` is ``T_map_base``."""
+        if self._sees_mates:
+            self._merger.see(scan, pose, self.near)
 
     def receive(self, now_s: float) -> None:
         """Take in what the others have said."""
@@ -145,13 +176,9 @@ class TeamLink:
                     self._strangers.add(letter.sender)
                     self._tell("warning", "team", f"robot {letter.sender} is not understood: {fault}")
                 continue
-            if isinstance(message, Tile):
-                self._map.put(letter.sender, message)
-            elif isinstance(message, Clocks):
-                self._ages.hear(letter.sender, message)
-            else:
-                self._roster.take(letter.sender, message, now_s, self._told_s(letter.sender, message.stamp_s))
+            self._take(letter.sender, message)
         self._tell_of_comings()
+        self._merger.look(now_s, sorted(self._present))
 
     def send(self, now_s: float, presence: Callable[[], Presence], grid: OccupancyGrid) -> None:
         """Tell where the robot is, and as many changed tiles as the budget allows.
@@ -166,7 +193,14 @@ class TeamLink:
         budget = self._team.budget_bytes_per_s
         self._allowance = min(self._allowance + budget * (now_s - self._filled_s), budget * _BURST_S)
         self._filled_s = now_s
-        told = replace(presence(), claims=self.claims, doing=self.doing, yields=self.yields)
+        told = replace(
+            presence(),
+            claims=self.claims,
+            doing=self.doing,
+            yields=self.yields,
+            knows_start=self._merger.knows_start,
+            shares_graph=self._merger.shares_graph,
+        )
         if self.is_paused:
             told = replace(told, ahead=np.empty((0, 2)))
         self._say(PRESENCE, PRESENCE, encode(told), often=True)
@@ -175,18 +209,22 @@ class TeamLink:
             self._say(CLOCKS, CLOCKS, encode(self._ages.tell()))
         self._cut(grid, now_s)
         while self._queue and self._allowance > 0.0:
-            place = next(iter(self._queue))
-            self._say(TILE, f"{TILE}/{place[0]}/{place[1]}", encode(self._queue.pop(place)))
+            topic = next(iter(self._queue))
+            kind, message = self._queue.pop(topic)
+            self._say(kind, topic, encode(message))
 
     def sum_up(self) -> None:
         """Tell the observers how much was told."""
         figures = self.figures()
-        parts = (f"{kind} {figures[f'{kind}_bytes_per_s'] / 1000.0:.1f} kB/s" for kind in (PRESENCE, TILE))
+        kinds = (PRESENCE, TILE, GRAPH)
+        parts = (f"{kind} {figures[f'{kind}_bytes_per_s'] / 1000.0:.1f} kB/s" for kind in kinds)
         budget = self._team.budget_bytes_per_s / 1000.0
-        waiting = f", {len(self._queue)} tiles wait" if self._queue else ""
+        waiting = f", {len(self._queue)} messages wait" if self._queue else ""
         mean_s, most_s = figures["word_age_mean_s"], figures["word_age_most_s"]
         ages = f"; words came {mean_s:.2f} s old, {most_s:.2f} s at most" if most_s else ""
         self._tell("info", "team", f"told {', '.join(parts)} of {budget:.0f} kB/s{waiting}{ages}")
+        for mate, why in self.not_merged().items():
+            self._tell("warning", "team", f"the map of robot {mate} is not merged: {why}")
 
     def memory(self) -> Mapping[str, object]:
         """What the robot has told about its work."""
@@ -209,6 +247,15 @@ class TeamLink:
 
     # --- inside -----------------------------------------------------------------------------------------
 
+    def _take(self, sender: str, message: Message) -> None:
+        if isinstance(message, Clocks):
+            self._ages.hear(sender, message)
+        elif isinstance(message, Presence):
+            told_s, way = self._told_s(sender, message.stamp_s), self._merger.hear(sender, message)
+            self._roster.take(sender, message, self._now_s, told_s, way)
+        else:
+            self._merger.take(sender, message)
+
     def _told_s(self, sender: str, stamp_s: float) -> float:
         """When what is heard now was told, on the robot's own clock, at the earliest."""
         if self._team.shares_clock:
@@ -222,18 +269,29 @@ class TeamLink:
         self._allowance -= len(payload)
 
     def _cut(self, grid: OccupancyGrid, now_s: float) -> None:
-        """Tiles that wait are replaced by newer ones, at their old place in the queue."""
-        if now_s - self._cut_s < _TILES_PERIOD_S - 1e-6 or grid.revision == self._cut_revision:
+        """What waits is replaced by what is newer, at its old place in the queue; the graph goes first."""
+        if now_s - self._cut_s < _TILES_PERIOD_S - 1e-6:
+            return
+        self._cut_s = now_s
+        graph = {_topic(message): (GRAPH, message) for message in self._merger.fresh()}
+        self._queue = {**graph, **self._queue, **graph}
+        if grid.revision == self._cut_revision:
             return
         window = None if self._cut_revision < 0 else self._slam.changed_since(self._cut_revision)
         for tile in self._cutter.changed(grid, window, round(1000 * now_s) + self._revision_base):
-            self._queue[tile.place] = tile
-        self._cut_s, self._cut_revision = now_s, grid.revision
+            self._queue[f"{TILE}/{tile.place[0]}/{tile.place[1]}"] = (TILE, tile)
+        self._cut_revision = grid.revision
 
     def _tell_of_comings(self) -> None:
-        present = frozenset(mate.name for mate in self.mates)
+        present = self._roster.heard(self._now_s)
         for name in sorted(present - self._present):
             self._tell("info", "team", f"robot {name} is there")
         for name in sorted(self._present - present):
             self._tell("warning", "team", f"robot {name} is silent: what it had claimed is free")
         self._present = present
+
+
+def _topic(message: SharedKeyframe | SharedStretch | Fits) -> str:
+    if isinstance(message, Fits):
+        return "fits"
+    return f"{'keyframe' if isinstance(message, SharedKeyframe) else 'stretch'}/{message.number}"

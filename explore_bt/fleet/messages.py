@@ -4,25 +4,35 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.errors import ExploreError
 from explore_bt.fleet.clocks import Clocks, clocks_from, clocks_to_bytes
-from explore_bt.types import Doing, Pose2, Twist2
+from explore_bt.fleet.graph_messages import (
+    Fits,
+    fits_from,
+    fits_to_bytes,
+    keyframe_from,
+    keyframe_to_bytes,
+    stretch_from,
+    stretch_to_bytes,
+)
+from explore_bt.types import Doing, Pose2, SharedKeyframe, SharedStretch, Twist2
 
-__all__ = ["MESSAGE_VERSION", "MessageError", "Presence", "Tile", "decode", "encode"]
+__all__ = ["MESSAGE_VERSION", "Message", "MessageError", "Presence", "Tile", "decode", "encode"]
 
-MESSAGE_VERSION = 1
+MESSAGE_VERSION = 2
 """Of the bytes: robots of another version are heard of, but not understood."""
 
 _HEAD = struct.Struct("<BB")
 _PRESENCE = struct.Struct("<dd3d2fff2BhHHH")
 _TILE = struct.Struct("<Qfii")
-_IS_PRESENCE, _IS_TILE, _IS_CLOCKS = 1, 2, 3
+_IS_PRESENCE, _IS_TILE, _IS_CLOCKS, _IS_KEYFRAME, _IS_STRETCH, _IS_FITS = 1, 2, 3, 4, 5, 6
+_KNOWS_START, _SHARES_GRAPH = 1, 2
 _STEP_M = 0.005
 """Places near the robot are told to half a centimetre, from it."""
 _CLAIM_STEP_M = 0.001
@@ -40,6 +50,8 @@ class Presence:
 
     Attributes:
         stop, ahead: (N, 2) float64, metres, ``map`` frame.
+        knows_start: its ``map`` frame is the one that all robots share whose start was given.
+        shares_graph: it tells keyframes, by which its start can be checked.
     """
 
     stamp_s: float
@@ -53,6 +65,19 @@ class Presence:
     claims: tuple[tuple[float, float], ...] = ()
     doing: Doing = Doing.AT_WORK
     yields: int = 0
+    knows_start: bool = True
+    shares_graph: bool = False
+
+    def moved(self, T_ours_theirs: Pose2) -> Presence:
+        """The same in another robot's ``map`` frame."""
+        claims = T_ours_theirs.apply(np.array(self.claims).reshape(-1, 2)).tolist()
+        return replace(
+            self,
+            T_map_base=T_ours_theirs.compose(self.T_map_base),
+            stop=T_ours_theirs.apply(self.stop.reshape(-1, 2)),
+            ahead=T_ours_theirs.apply(self.ahead.reshape(-1, 2)),
+            claims=tuple((x, y) for x, y in claims),
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,16 +96,28 @@ class Tile:
     cells: NDArray[np.int8]
 
 
-def encode(message: Presence | Tile | Clocks) -> bytes:
+Message = Presence | Tile | Clocks | Fits | SharedKeyframe | SharedStretch
+
+
+def encode(message: Message) -> bytes:
     """The bytes; little endian, lengths first."""
-    if isinstance(message, Tile):
-        return _HEAD.pack(MESSAGE_VERSION, _IS_TILE) + _tile_bytes(message)
-    if isinstance(message, Clocks):
-        return _HEAD.pack(MESSAGE_VERSION, _IS_CLOCKS) + clocks_to_bytes(message)
-    return _HEAD.pack(MESSAGE_VERSION, _IS_PRESENCE) + _presence_bytes(message)
+    match message:
+        case Presence():
+            kind, body = _IS_PRESENCE, _presence_bytes(message)
+        case Tile():
+            kind, body = _IS_TILE, _tile_bytes(message)
+        case Clocks():
+            kind, body = _IS_CLOCKS, clocks_to_bytes(message)
+        case Fits():
+            kind, body = _IS_FITS, fits_to_bytes(message)
+        case SharedKeyframe():
+            kind, body = _IS_KEYFRAME, keyframe_to_bytes(message)
+        case SharedStretch():
+            kind, body = _IS_STRETCH, stretch_to_bytes(message)
+    return _HEAD.pack(MESSAGE_VERSION, kind) + body
 
 
-def decode(payload: bytes) -> Presence | Tile | Clocks:
+def decode(payload: bytes) -> Message:
     """The message.
 
     Raises:
@@ -91,15 +128,10 @@ def decode(payload: bytes) -> Presence | Tile | Clocks:
     version, kind = _HEAD.unpack_from(payload)
     if version != MESSAGE_VERSION:
         raise MessageError(f"a message of version {version}; this explore-bt understands {MESSAGE_VERSION}")
-    body = payload[_HEAD.size :]
     try:
-        if kind == _IS_PRESENCE:
-            return _presence(body)
-        if kind == _IS_TILE:
-            return _tile(body)
-        if kind == _IS_CLOCKS:
-            return clocks_from(body)
-        raise ValueError("there is no such kind")
+        if kind not in _READERS:
+            raise ValueError("there is no such kind")
+        return _READERS[kind](payload[_HEAD.size :])
     except (struct.error, zlib.error, ValueError, IndexError) as fault:
         raise MessageError(f"a message of kind {kind} is cut off or damaged: {fault}") from None
 
@@ -117,7 +149,7 @@ def _presence_bytes(told: Presence) -> bytes:
         told.radius_m,
         told.speed_limit_mps,
         _DOINGS.index(told.doing),
-        0,
+        _KNOWS_START * told.knows_start | _SHARES_GRAPH * told.shares_graph,
         told.yields,
         len(told.stop),
         len(told.ahead),
@@ -133,7 +165,9 @@ def _near_bytes(points: NDArray[np.float64], pose: Pose2) -> bytes:
 
 
 def _presence(body: bytes) -> Presence:
-    stamp, binding, x, y, yaw, v, w, radius, speed, doing, _, yields, *counts = _PRESENCE.unpack_from(body)
+    stamp, binding, x, y, yaw, v, w, radius, speed, doing, flags, yields, *counts = _PRESENCE.unpack_from(
+        body
+    )
     if not np.isfinite([stamp, binding, x, y, yaw, v, w, radius, speed]).all():
         raise ValueError("a number is not finite")
     at = _PRESENCE.size
@@ -152,6 +186,8 @@ def _presence(body: bytes) -> Presence:
         tuple((float(a), float(b)) for a, b in places),
         _DOINGS[doing],
         yields,
+        bool(flags & _KNOWS_START),
+        bool(flags & _SHARES_GRAPH),
     )
 
 
@@ -182,3 +218,13 @@ def _tile(body: bytes) -> Tile:
     cells = np.array([0, 100, -1, -1], dtype=np.int8)[codes].reshape(side, side)
     cells.flags.writeable = False
     return Tile(revision, round(resolution_m, 6), (col, row), cells)
+
+
+_READERS: Mapping[int, Callable[[bytes], Message]] = {
+    _IS_PRESENCE: _presence,
+    _IS_TILE: _tile,
+    _IS_CLOCKS: clocks_from,
+    _IS_FITS: fits_from,
+    _IS_KEYFRAME: keyframe_from,
+    _IS_STRETCH: stretch_from,
+}

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.fleet.messages import Tile
+from explore_bt.fleet.mosaic import Mosaic
 from explore_bt.fleet.tiles import TILE_CELLS, TileCutter, first_cell
-from explore_bt.types import UNKNOWN, GridWindow, OccupancyGrid
+from explore_bt.types import UNKNOWN, GridWindow, MapFit, OccupancyGrid
 
 __all__ = ["TeamMap", "merged_map"]
 
@@ -38,7 +39,7 @@ class TeamMap:
 
     def __init__(self, own: _Maps) -> None:
         self._maps = own
-        self._tiles: dict[tuple[int, int], dict[str, Tile]] = {}
+        self._mosaics: dict[str, Mosaic] = {}
         self._stale: set[tuple[int, int]] = set()
         self._own: OccupancyGrid | None = None
         self._grid: OccupancyGrid | None = None
@@ -47,20 +48,35 @@ class TeamMap:
         self._revision = 0
 
     def put(self, sender: str, tile: Tile) -> bool:
-        """Take a tile, unless there is a newer one or its cells are of another size; whether it counts."""
-        if len(tile.cells) != TILE_CELLS or abs(tile.resolution_m - self._maps.grid().resolution_m) > 1e-4:
+        """Keep a tile, in the sender's ``map`` frame, unless there is a newer one; whether it is kept.
+
+        One with cells of another size is not. It is drawn once ``lay`` has told how the sender's map lies.
+        """
+        resolution_m = self._maps.grid().resolution_m
+        if len(tile.cells) != TILE_CELLS or abs(tile.resolution_m - resolution_m) > 1e-4:
             return False
-        there = self._tiles.setdefault(tile.place, {})
-        if sender in there and there[sender].revision >= tile.revision:
-            return False
-        there[sender] = tile
-        self._stale.add(tile.place)
-        return True
+        mosaic = self._mosaics.setdefault(sender, Mosaic(resolution_m))
+        is_taken = mosaic.put(tile)
+        self._stale |= mosaic.changed()
+        return is_taken
+
+    def lay(self, sender: str, fit: MapFit | None) -> None:
+        """The sender's map lies like this in one's own; None: it is not to be drawn."""
+        if sender not in self._mosaics:
+            self._mosaics[sender] = Mosaic(self._maps.grid().resolution_m)
+        self._mosaics[sender].lay(fit)
+        self._stale |= self._mosaics[sender].changed()
+
+    def seen_by(self, sender: str, fit: MapFit) -> Mosaic | None:
+        """The sender's map as it would lie by a fit; None if it has told nothing."""
+        mosaic = self._mosaics.get(sender)
+        return None if mosaic is None else mosaic.by(fit)
 
     def grid(self) -> OccupancyGrid:
         """The newest map; the same object as before while nothing has changed. Alone: the own map itself."""
         own = self._maps.grid()
-        if not self._tiles:
+        if self._grid is None and not self._places():
+            self._stale.clear()
             return own
         if self._grid is None or self._own is None or not self._fits(own):
             self._draw_anew(own)
@@ -71,7 +87,7 @@ class TeamMap:
 
     def changed_since(self, revision: int) -> GridWindow | None:
         """As ``Slam.changed_since``, of this map."""
-        if not self._tiles:
+        if self._grid is None:
             return self._maps.changed_since(revision)
         later = [window for of, window in self._changes if of > revision]
         known_from = self._changes[0][0] - 1 if self._changes else self._revision
@@ -96,7 +112,7 @@ class TeamMap:
         col0, row0 = first_cell(own)
         places = np.array(
             [
-                *self._tiles,
+                *self._places(),
                 (col0 // TILE_CELLS, row0 // TILE_CELLS),
                 ((col0 + own.shape[1]) // TILE_CELLS, (row0 + own.shape[0]) // TILE_CELLS),
             ]
@@ -108,10 +124,10 @@ class TeamMap:
         self._theirs = np.full(shape, UNKNOWN, dtype=np.int8)
         self._revision += 1
         self._grid = OccupancyGrid(self._theirs.copy(), own.resolution_m, origin, self._revision)
-        for place in self._tiles:
-            self._draw_tile(place)
         self._changes.clear()
         self._stale.clear()
+        for place in self._places():
+            self._draw_tile(place)
         self._finish(own, GridWindow(0, 0, *shape))
         self._changes.clear()
 
@@ -135,9 +151,14 @@ class TeamMap:
         window = self._tile_window(place)
         part = self._theirs[window.slices]
         part[:] = UNKNOWN
-        for tile in sorted(self._tiles[place].values(), key=lambda tile: tile.revision):
-            np.copyto(part, tile.cells, where=tile.cells != UNKNOWN)
+        for mosaic in sorted(self._mosaics.values(), key=lambda mosaic: mosaic.revision(place)):
+            cells = mosaic.drawn(place)
+            np.copyto(part, cells, where=cells != UNKNOWN)
         return window
+
+    def _places(self) -> set[tuple[int, int]]:
+        """All tiles on which others have drawn."""
+        return {place for mosaic in self._mosaics.values() for place in mosaic.places}
 
     def _tile_window(self, place: tuple[int, int]) -> GridWindow:
         assert self._grid is not None
@@ -175,11 +196,16 @@ def _lay_over(cells: NDArray[np.int8], own: OccupancyGrid, at: GridWindow, windo
     np.copyto(cells[row0:row1, col0:col1], known, where=known != UNKNOWN)
 
 
-def merged_map(maps: Sequence[_Maps]) -> OccupancyGrid:
-    """The maps of several robots as one: where two have seen the same, the first one's."""
-    first, *others = maps
+def merged_map(first: _Maps, others: Sequence[tuple[_Maps, MapFit | None]]) -> OccupancyGrid:
+    """The maps of several robots as one: where two have seen the same, the earlier one's.
+
+    Args:
+        first: in whose ``map`` frame it is drawn.
+        others: with how they lie in it; who does not is left out.
+    """
     whole = TeamMap(first)
-    for number, other in enumerate(others):
+    for number, (other, fit) in enumerate(others):
+        whole.lay(str(number), fit)
         for tile in TileCutter().changed(other.grid(), None, len(others) - number):
             whole.put(str(number), tile)
     return whole.grid()

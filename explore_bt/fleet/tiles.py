@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from explore_bt.fleet.messages import Tile
 from explore_bt.types import UNKNOWN, GridWindow, OccupancyGrid
 
-__all__ = ["TILE_CELLS", "TileCutter", "first_cell"]
+__all__ = ["TILE_CELLS", "TileCutter", "cut_tile", "first_cell"]
 
 TILE_CELLS = 64
 """Cells along a tile's side: 3.2 m at 5 cm."""
@@ -41,7 +42,7 @@ class TileCutter:
             return
         for row in range((part.row0 + row0) // TILE_CELLS, (part.row1 - 1 + row0) // TILE_CELLS + 1):
             for col in range((part.col0 + col0) // TILE_CELLS, (part.col1 - 1 + col0) // TILE_CELLS + 1):
-                tile = _cut(grid, (col, row), (col0, row0), revision)
+                tile = Tile(revision, grid.resolution_m, (col, row), cut_tile(grid, (col, row), (col0, row0)))
                 content = tile.cells.tobytes()
                 was = self._cut.get((col, row))
                 if content == was or (was is None and (tile.cells == UNKNOWN).all()):
@@ -50,8 +51,8 @@ class TileCutter:
                 yield tile
 
 
-def _cut(grid: OccupancyGrid, place: tuple[int, int], first: tuple[int, int], revision: int) -> Tile:
-    """One tile; what of it lies beyond the map is unknown."""
+def cut_tile(grid: OccupancyGrid, place: tuple[int, int], first: tuple[int, int]) -> NDArray[np.int8]:
+    """(TILE_CELLS, TILE_CELLS) int8: a tile of a map whose ``first_cell`` is given; unknown beyond it."""
     cells = np.full((TILE_CELLS, TILE_CELLS), UNKNOWN, dtype=np.int8)
     row, col = place[1] * TILE_CELLS - first[1], place[0] * TILE_CELLS - first[0]
     top, left = max(row, 0), max(col, 0)
@@ -59,4 +60,4 @@ def _cut(grid: OccupancyGrid, place: tuple[int, int], first: tuple[int, int], re
     if top < bottom and left < right:
         cells[top - row : bottom - row, left - col : right - col] = grid.cells[top:bottom, left:right]
     cells.flags.writeable = False
-    return Tile(revision, grid.resolution_m, place, cells)
+    return cells

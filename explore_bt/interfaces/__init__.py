@@ -8,6 +8,7 @@ from explore_bt.interfaces.driver import Driver
 from explore_bt.interfaces.exporter import Exporter, RobotProduct
 from explore_bt.interfaces.filming import Filming
 from explore_bt.interfaces.finding import Finding
+from explore_bt.interfaces.graph_share import GraphShare
 from explore_bt.interfaces.held_by import HeldBy
 from explore_bt.interfaces.planner import Planner, never
 from explore_bt.interfaces.playback import Playback, Recorded
@@ -18,6 +19,7 @@ from explore_bt.interfaces.sink import Sink
 from explore_bt.interfaces.slam import Slam
 from explore_bt.interfaces.snapshot import (
     Event,
+    MateFrame,
     NodeInfo,
     NodeState,
     PortInfo,
@@ -43,11 +45,13 @@ __all__ = [
     "Exporter",
     "Filming",
     "Finding",
+    "GraphShare",
     "GroundTruth",
     "HeldBy",
     "Letter",
     "MapMemory",
     "MapView",
+    "MateFrame",
     "NodeInfo",
     "NodeState",
     "Offers",

@@ -28,6 +28,10 @@ class Driver(Plugin):
     kind = "driver"
     films: ClassVar[bool] = False
     """Whether ``filming`` gives pictures: asked before anything is set up."""
+    is_simulated: ClassVar[bool] = False
+    """Whether there is no robot but in this process."""
+    shows_mates: ClassVar[bool] = True
+    """Whether scans show the bodies of team mates that are near."""
 
     @abstractmethod
     def setup(self, context: RobotContext) -> None:

@@ -73,6 +73,8 @@ class RobotContext:
         robot: the robot's name in the mission.
         seed: the run's seed; draw from ``rng`` only, so that runs repeat.
         start: pose of ``base_link`` in ``map`` when the mission starts; None if nobody said so.
+        knows_start: whether ``start`` is a place in the frame that the robots of the mission share; else the
+            robot's ``map`` is its own, and begins where it stands.
         footprint_radius_m: the robot's circular footprint.
         limits: the driver's limits, capped by the mission's.
         shape: of the body, for who makes use of a 3D lidar.
@@ -91,6 +93,7 @@ class RobotContext:
     truth: GroundTruth | None = None
     resumed: Resumption | None = None
     connection: object = None
+    knows_start: bool = True
     commons: Commons = field(default_factory=Commons, compare=False, repr=False)
 
     def rng(self, stream: str) -> np.random.Generator:

@@ -6,6 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from explore_bt.interfaces.graph_share import GraphShare
 from explore_bt.interfaces.plugin import Plugin, RobotContext
 from explore_bt.types import Estimate, GridWindow, MapStructure, Measurement, OccupancyGrid, Trajectory
 
@@ -73,6 +74,10 @@ class Slam(Plugin):
     def structure(self) -> MapStructure:
         """Voxels and pose graph for the exporters, called once at the end; nothing unless overridden."""
         return MapStructure()
+
+    def graph_share(self) -> GraphShare:
+        """What is told to team mates and found out about them; nothing unless overridden. Called once."""
+        return GraphShare()
 
     @abstractmethod
     def save(self, folder: Path) -> None:

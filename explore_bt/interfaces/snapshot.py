@@ -23,7 +23,16 @@ from explore_bt.types import (
     Twist2,
 )
 
-__all__ = ["Event", "NodeInfo", "NodeState", "PortInfo", "RobotSnapshot", "RunInfo", "TickSnapshot"]
+__all__ = [
+    "Event",
+    "MateFrame",
+    "NodeInfo",
+    "NodeState",
+    "PortInfo",
+    "RobotSnapshot",
+    "RunInfo",
+    "TickSnapshot",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +108,20 @@ class RunInfo:
     resumed_s: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class MateFrame:
+    """How the map of a team mate lies in the robot's own.
+
+    Attributes:
+        T_ours_theirs: to a centimetre, about where the mate is; None while nobody knows.
+        not_merged: why its map is not part of the robot's; empty if it is.
+    """
+
+    name: str
+    T_ours_theirs: Pose2 | None
+    not_merged: str = ""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class RobotSnapshot:
     """One robot after a tick; every value is immutable.
@@ -117,6 +140,7 @@ class RobotSnapshot:
         charge: of the battery, a share; None where nobody measures it.
         doing: what the robot is about, as its team is told.
         claims: where it goes to look, as its team is told, (x, y) in metres, ``map`` frame.
+        mates: everybody of the team who has been heard, and where their maps lie.
         drawing: what the leaves saw in the last tick in which any of them decided; the same object till then.
     """
 
@@ -141,6 +165,7 @@ class RobotSnapshot:
     charge: float | None = None
     doing: Doing = Doing.AT_WORK
     claims: tuple[tuple[float, float], ...] = ()
+    mates: tuple[MateFrame, ...] = ()
 
     @property
     def seen_from(self) -> Pose2:

@@ -13,11 +13,18 @@ __all__ = ["GroundTruth"]
 
 
 class GroundTruth(ABC):
-    """The truth behind a simulated robot, in the ``map`` frame; read by scores and tests only."""
+    """The truth behind a simulated robot, in the frame of its world; read by scores and tests only.
+
+    That is the ``map`` frame, unless a mission says that the robot's start is unknown, or says it wrong.
+    """
 
     @abstractmethod
     def pose(self) -> Pose2:
         """Where the robot is now."""
+
+    def start(self) -> Pose2 | None:
+        """Where the robot began, where that is not what its driver calls its start (None, the default)."""
+        return None
 
     @abstractmethod
     def contacts(self) -> int:

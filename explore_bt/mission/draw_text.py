@@ -50,6 +50,8 @@ def _robot(robot: RobotSpec) -> Iterator[str]:
     yield f"robot {robot.name}  " + " · ".join(f"{choice.kind} {choice.name}" for choice in choices)
     if robot.start is not None:
         yield f"  start  {pose(robot.start.x, robot.start.y, robot.start.yaw_rad)}"
+    if not robot.knows_start:
+        yield "  start  unknown"
     if robot.saved_map is not None:
         yield f"  goes on in the map of {robot.saved_map}"
 

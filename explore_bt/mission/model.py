@@ -38,6 +38,8 @@ class RobotSpec:
 
     Attributes:
         start: pose of ``base_link`` in ``map``; None leaves it to the driver.
+        knows_start: False where the mission says ``start: unknown``: the robot's map is its own until
+            closures with its mates tell how the maps lie.
         saved_map: folder with the state that SLAM saved in an earlier run; None begins a new map.
         tree: root of its behaviour tree.
     """
@@ -50,6 +52,7 @@ class RobotSpec:
     planner: PluginChoice[Planner]
     controller: PluginChoice[Controller]
     tree: NodeSpec
+    knows_start: bool = True
 
 
 @dataclass(frozen=True, slots=True)

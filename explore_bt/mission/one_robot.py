@@ -32,11 +32,11 @@ def only_robot(mission: Mission, name: str, pace: float = 1.0) -> Mission:
             f"{mission.path}: a robot in a process of its own hears the others over a network; write "
             "team: {use: zenoh}"
         )
-    lost = [robot.name for robot in mission.robots if robot.start is None]
+    lost = [robot.name for robot in mission.robots if robot.start is None and robot.knows_start]
     if len(names) > 1 and lost:
         raise UserError(
             f"{mission.path}: nobody knows where {', '.join(lost)} begins; robots in processes of their own "
-            "need a start each, in one frame: start: [1 m, 2 m, 0 deg]"
+            "need a start each, in one frame: start: [1 m, 2 m, 0 deg]; or start: unknown"
         )
     robots = tuple(robot for robot in mission.robots if robot.name == name)
     return replace(mission, robots=robots, solo=Solo(name, pace))

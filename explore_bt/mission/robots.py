@@ -25,11 +25,20 @@ from explore_bt.mission.words import did_you_mean
 from explore_bt.types import Pose2
 from explore_bt.units import FilePath, PoseTriple
 
-__all__ = ["PLUGINS", "ROBOT_KEYS", "TEAM_PLUGINS", "read_robot", "read_team", "unknown_plugin"]
+__all__ = [
+    "PLUGINS",
+    "ROBOT_KEYS",
+    "TEAM_PLUGINS",
+    "UNKNOWN_START",
+    "read_robot",
+    "read_team",
+    "unknown_plugin",
+]
 
 PLUGINS = ("driver", "slam", "planner", "controller")
 TEAM_PLUGINS = ("team", "allocator")
 ROBOT_KEYS = ("start", "map", *PLUGINS, "tree", "doc")
+UNKNOWN_START = "unknown"
 _ROBOT_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 
@@ -52,7 +61,7 @@ def read_robot(
     example = "{driver: sim2d, slam: kiss_gtsam, planner: skeleton, controller: pursuit}"
     entries = expect_entries(entry.value, f"robots.{entry.key}", example, faults) or Entries((), entry.place)
     check_keys(entries, ROBOT_KEYS, f"robot {entry.key}", faults)
-    start = _start(entries.get("start"), scope, faults)
+    start, knows_start = _start(entries.get("start"), scope, faults)
     saved_map = _saved_map(entries.get("map"), scope, faults)
     tree = read_tree(entries.get("tree"), entry.place)
     resolved = Entries(
@@ -72,6 +81,7 @@ def read_robot(
         cast(PluginChoice[Planner], planner),
         cast(PluginChoice[Controller], controller),
         tree,
+        knows_start,
     )
 
 
@@ -105,13 +115,19 @@ def _given(value: Value | None, scope: Scope, faults: Faults) -> Value | None:
     return None if isinstance(found, Scalar) and found.data is None else found
 
 
-def _start(value: Value | None, scope: Scope, faults: Faults) -> Pose2 | None:
+def _start(value: Value | None, scope: Scope, faults: Faults) -> tuple[Pose2 | None, bool]:
+    """The pose if one is given, and whether it is known: ``unknown`` if nobody is to know it."""
     found = _given(value, scope, faults)
     if found is None:
-        return None
+        return None, True
+    if isinstance(found, Scalar) and isinstance(found.data, str):
+        if found.data == UNKNOWN_START:
+            return None, False
+        faults.add(found.place, f"start: {written(found)} is no pose", "write [1 m, 2 m, 0 deg], or unknown")
+        return None, True
     adapter: TypeAdapter[tuple[float, float, float]] = TypeAdapter(PoseTriple)
     pose = check_value(lambda text: adapter.validate_json(text, strict=True), found, "start", Asked(), faults)
-    return Pose2(*pose) if isinstance(pose, tuple) else None
+    return Pose2(*pose) if isinstance(pose, tuple) else None, True
 
 
 def _saved_map(value: Value | None, scope: Scope, faults: Faults) -> Path | None:

@@ -13,7 +13,7 @@ from explore_bt.mission.files import FORMAT
 from explore_bt.mission.limits import LimitsModel, TickModel
 from explore_bt.mission.nodes import CONTROL_NODES, MODIFIERS
 from explore_bt.mission.params import PARAM_TYPES, PLUGIN_KINDS
-from explore_bt.mission.robots import PLUGINS, TEAM_PLUGINS
+from explore_bt.mission.robots import PLUGINS, TEAM_PLUGINS, UNKNOWN_START
 from explore_bt.mission.words import quantity
 from explore_bt.tree import REQUIRED, Input, Key, Leaf, Output
 from explore_bt.units import Duration, PoseTriple
@@ -30,7 +30,15 @@ _NODES: Schema = {"type": "array", "minItems": 1, "items": _NODE}
 def mission_schema(catalog: PluginCatalog) -> Schema:
     """JSON Schema 2020-12 of a mission, for yaml-language-server and others."""
     robot = {
-        "start": _or_constant({"anyOf": [TypeAdapter(PoseTriple).json_schema(), {"type": "null"}]}),
+        "start": _or_constant(
+            {
+                "anyOf": [
+                    TypeAdapter(PoseTriple).json_schema(),
+                    {"const": UNKNOWN_START, "description": "found out by meeting places of team mates"},
+                    {"type": "null"},
+                ]
+            }
+        ),
         "map": {"type": ["string", "null"], "description": "folder slam/ of an earlier run, to go on in"},
         **{kind: _plugins(catalog, kind) for kind in PLUGINS},
         "tree": {"anyOf": [{"type": "string"}, _NODE], "description": "a name in trees, or a node"},

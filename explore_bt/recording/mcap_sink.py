@@ -152,7 +152,8 @@ def result_message(result: Result) -> str:
     """The result without what a clock on the wall has measured: two equal runs are equal files."""
     figures = result.as_dict()
     figures.pop("wall_time_s")
-    figures["left_open"], figures["mocked"] = list(result.left_open), list(result.mocked)
+    for name in ("left_open", "mocked", "not_merged"):
+        figures[name] = list(getattr(result, name))
     figures["slam"] = {name: value for name, value in result.slam.items() if not _is_computing_time(name)}
     return json.dumps({name: _figure(value) for name, value in figures.items()}, ensure_ascii=False)
 

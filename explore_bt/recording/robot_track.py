@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 
-from explore_bt.interfaces import HeldBy, NodeState, RobotSnapshot
+from explore_bt.interfaces import HeldBy, MateFrame, NodeState, RobotSnapshot
 from explore_bt.recording.drawing import drawing_message
 from explore_bt.recording.foxglove import (
     grid_message,
@@ -101,7 +101,7 @@ class RobotTrack:
         self._grid_written: OccupancyGrid | None = None
         self._path: object = _NOTHING
         self._gate_reason = ""
-        self._told: object = (Doing.AT_WORK, ())
+        self._told: object = (Doing.AT_WORK, (), ())
         self._drawing = Drawing()
         self._moving_told: tuple[MovingObstacle, ...] = ()
         self._tally, self._count_due = TreeTally(), _Throttle(_COUNT_PERIOD_NS)
@@ -267,10 +267,11 @@ class RobotTrack:
             )
 
     def _team(self, time_ns: int, robot: RobotSnapshot) -> None:
-        told = (robot.doing, robot.claims)
+        told = (robot.doing, robot.claims, robot.mates)
         if told != self._told:
             self._told = told
-            words = _encode(to_json({"doing": robot.doing, "claims": robot.claims}))
+            mates = [_mate(mate) for mate in robot.mates]
+            words = _encode(to_json({"doing": robot.doing, "claims": robot.claims, "mates": mates}))
             self._write(self._topic + "team", time_ns, f'{{"timestamp":{time_json(time_ns)},{words[1:]}')
 
     def _moving(self, time_ns: int, moving: tuple[MovingObstacle, ...]) -> None:
@@ -309,3 +310,9 @@ def _state(time_ns: int, robot: RobotSnapshot) -> str:
         **{name: getattr(robot.score, name) for name in _SCORES},
     }
     return f'{{"timestamp":{time_json(time_ns)},{_encode(to_json(figures))[1:]}'
+
+
+def _mate(mate: MateFrame) -> dict[str, object]:
+    T = mate.T_ours_theirs
+    place = None if T is None else {"x": T.x, "y": T.y, "yaw": T.yaw_rad}
+    return {"name": mate.name, "T_ours_theirs": place, "not_merged": mate.not_merged}

@@ -89,6 +89,11 @@ _TALLY = _object(
     running_s=_NUMBER,
     longest_s=_NUMBER,
 )
+_MATE = _object(
+    name=_TEXT,
+    T_ours_theirs={"anyOf": [_object(x=_NUMBER, y=_NUMBER, yaw=_NUMBER), {"type": "null"}]},
+    not_merged=_TEXT,
+)
 _NODE_STATE = _object(id=_INTEGER, status=_TEXT, message=_TEXT)
 _NODE = _object(
     id=_INTEGER,
@@ -166,7 +171,9 @@ _SCHEMAS: Mapping[str, _Schema] = {
         ate_rmse_m=_MAYBE,
         distance_to_home_m=_NUMBER,
     ),
-    "explore_bt.Team": _object(timestamp=_TIME, doing=_TEXT, claims=_array(_array(_NUMBER))),
+    "explore_bt.Team": _object(
+        timestamp=_TIME, doing=_TEXT, claims=_array(_array(_NUMBER)), mates=_array(_MATE)
+    ),
     "explore_bt.Measurements": _object(
         timestamp=_TIME,
         order=_TEXT,

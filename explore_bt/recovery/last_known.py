@@ -80,7 +80,8 @@ def _error_m(recording: Recording) -> float | None:
 def _of_message(value: Mapping[str, Any]) -> Result:
     known = {name: value[name] for name in _RESULT if name in value}
     known["outcome"] = Outcome(value["outcome"])
-    known["left_open"] = tuple(value.get("left_open", ()))
+    for name in ("left_open", "not_merged"):
+        known[name] = tuple(value.get(name, ()))
     return Result(**{"wall_time_s": 0.0, **known})
 
 

@@ -69,6 +69,8 @@ def why_section(result: Result) -> str:
     """Why the mission ended, and what is left to explore."""
     left = "".join(f"<li>{escape(line)}</li>" for line in result.left_open)
     rest = f"<h3>Left open</h3><ul>{left}</ul>" if left else "<p>Nothing was left open.</p>"
+    apart = "".join(f"<li>{escape(line)}</li>" for line in result.not_merged)
+    rest += f"<h3>Not merged</h3><ul>{apart}</ul>" if apart else ""
     return section("Why it stopped", f"<p>{escape(result.reason) or 'No reason was given.'}</p>{rest}")
 
 

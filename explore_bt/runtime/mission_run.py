@@ -202,6 +202,7 @@ def _result(
         left_open=tuple(str(sentence) for sentence in left_open) if isinstance(left_open, tuple) else (),
         slam=dict(robot.slam.figures()),
         mocked=_mocked(robots),
+        not_merged=tuple(f"robot {name}: {why}" for name, why in robot.team.not_merged().items()),
     )
 
 
@@ -238,4 +239,8 @@ def _export(registry: Registry, mission: Mission, robots: Sequence[Robot], resul
 
 
 def _map_of_all(robots: Sequence[Robot]) -> OccupancyGrid:
-    return merged_map([robot.slam for robot in robots]) if len(robots) > 1 else robots[0].team_map.grid()
+    """In the frame of the first robot; those whose maps are not merged with its own are left out."""
+    first, *others = robots
+    if not others:
+        return first.team_map.grid()
+    return merged_map(first.slam, [(robot.slam, first.team.chart(robot.name)) for robot in others])

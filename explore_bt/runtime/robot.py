@@ -14,6 +14,7 @@ from explore_bt.interfaces import Commons, Event, MapMemory, MapView, RobotConte
 from explore_bt.mission import Mission, RobotSpec, build_tree
 from explore_bt.runtime.centred import centred
 from explore_bt.runtime.fault_log import FaultLog
+from explore_bt.runtime.origin import context_with, origin_of
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.runtime.purse import Purse
 from explore_bt.runtime.resumption import Cut, check_clock
@@ -78,7 +79,7 @@ class Robot:
         self.driver = spec.driver.make()
         self.slam = spec.slam.make()
         self.team_map = TeamMap(self.slam)
-        self.team = team_place(mission, self.name, self.slam, self.tell)
+        self.team = team_place(mission, self.name, self.slam, self.driver, self.tell)
         self._planner = spec.planner.make()
         self._controller = spec.controller.make()
         self.blackboard = Blackboard()
@@ -108,21 +109,15 @@ class Robot:
             seed=self._seed,
             start=self._spec.start,
             resumed=resumed,
+            knows_start=self._spec.knows_start,
             commons=self._commons,
         )
         self.driver.setup(context)
         check_clock(self.driver, resumed)
+        self._origin = origin_of(self.driver, self._spec.knows_start)
         limits = self._mission.limits.apply(self.driver.limits)
-        context = replace(
-            context,
-            start=self.driver.start,
-            footprint_radius_m=self.driver.footprint_radius_m,
-            limits=limits,
-            shape=self.driver.shape,
-            truth=self.driver.truth(),
-            connection=self.driver.connection,
-        )
-        self.home = cut.memory.home if cut else self.driver.start
+        context = context_with(context, self.driver, self._origin, limits)
+        self.home = cut.memory.home if cut else self._origin.start
         warm_up()
         self.slam.setup(replace(context, start=cut.memory.pose) if cut else context)
         saved_map = cut.slam_folder if cut else self._spec.saved_map
@@ -261,6 +256,7 @@ class Robot:
             self._take(measurement)
         if (scan := self.scan()) is not None and scan is not before:
             self.pilot.see(*self._senses.look(scan, self.pilot))
+            self.team.see(scan, self._senses.scan_pose or self.home)
         self._news.of_health(self.estimate(), self._clock_s())
 
     def act(self, now_s: float, dt_s: float) -> None:
@@ -321,8 +317,8 @@ class Robot:
 
     def memory(self) -> RobotMemory:
         """See ``RobotKeeping.memory``."""
-        pose = self.slam.estimate().T_map_base
-        return self._keeping.memory(self.home, pose, self.scores.true_pose, self._poses_before)
+        pose, true_pose = self.slam.estimate().T_map_base, self._origin.in_world(self.scores.true_pose)
+        return self._keeping.memory(self.home, pose, true_pose, self._poses_before)
 
     def _restore(self, cut: Cut) -> None:
         self._keeping.restore(cut.memory)
@@ -360,6 +356,7 @@ class Robot:
             charge=self._purse.charge,
             doing=self.team.doing,
             claims=self.team.claims,
+            mates=self.team.frames(),
         )
 
     def tell(self, level: str, source: str, message: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from explore_bt.fleet import Alone, Presence, TeamLink
-from explore_bt.interfaces import HeldBy, Slam
+from explore_bt.interfaces import Driver, HeldBy, Slam
 from explore_bt.mission import Mission
 from explore_bt.runtime.pilot import Pilot
 from explore_bt.types import Estimate
@@ -14,12 +14,15 @@ __all__ = ["give_word", "presence_of", "team_place"]
 
 
 def team_place(
-    mission: Mission, robot: str, slam: Slam, tell: Callable[[str, str, str], None]
+    mission: Mission, robot: str, slam: Slam, driver: Driver, tell: Callable[[str, str, str], None]
 ) -> Alone | TeamLink:
     """Its link to the others, over plugins of its own; nothing is opened yet."""
     if mission.team is None:
         return Alone(robot)
-    return TeamLink(robot, mission.team.team.make(), mission.team.allocator.make(), slam, tell)
+    # a simulation of one robot alone knows nothing of its mates' bodies
+    sees_mates = driver.shows_mates and not (mission.solo is not None and driver.is_simulated)
+    team, allocator = mission.team.team.make(), mission.team.allocator.make()
+    return TeamLink(robot, team, allocator, slam, tell, sees_mates)
 
 
 def give_word(pilot: Pilot, team: Alone | TeamLink, now_s: float) -> None:

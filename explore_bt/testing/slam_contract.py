@@ -26,7 +26,17 @@ from explore_bt.errors import UserError
 from explore_bt.interfaces import API_VERSION, RobotContext, Slam
 from explore_bt.testing.cloud_contract import CloudSlamContract
 from explore_bt.testing.slam_room import Room, RoomTruth, ScriptedRobot
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, Health, Imu, Measurement, Pose2, Scan2D
+from explore_bt.types import (
+    FREE,
+    OCCUPIED,
+    STRETCH_KEYFRAMES,
+    UNKNOWN,
+    Health,
+    Imu,
+    Measurement,
+    Pose2,
+    Scan2D,
+)
 
 __all__ = ["SlamContract"]
 
@@ -97,6 +107,24 @@ class SlamContract(CloudSlamContract):
         assert worst < self.tolerance_m, f"at a corner of the square the estimate was {worst:.3f} m off"
         health = slam.estimate()
         assert health.health is Health.OK, f"after an easy drive health is {health.health}: {health.reason}"
+
+    def test_what_it_tells_its_team_of_its_graph_is_whole(self) -> None:
+        slam, robot = self._ready(_START)
+        _feed(slam, robot.drive(0.3, 0.2, 6.0))
+        share = slam.graph_share()
+        count = share.keyframe_count()
+        stretches = [share.stretch(number) for number in range(math.ceil(count / STRETCH_KEYFRAMES))]
+        told = sum(len(each.poses) for each in stretches)
+        assert told == count, f"{count} keyframes, but stretches tell the poses of {told}"
+        for number in range(count):
+            points = share.keyframe(number).points
+            assert points.ndim == 2, f"keyframe {number}: points have shape {points.shape}, not (N, 2)"
+            assert np.isfinite(points).all(), f"keyframe {number} has points that are not finite"
+        steps = {edge.b for each in stretches for edge in each.edges if not edge.is_closure}
+        missing = sorted(set(range(1, count)) - steps)
+        assert not missing, f"no constraint tells how keyframes {missing} were reached"
+        share.look()
+        assert share.fit("nobody") is None, "a mate that has told nothing has a fit"
 
     def test_the_estimate_is_stamped_and_its_covariance_is_one(self) -> None:
         slam, robot = self._ready(_START)

@@ -31,11 +31,19 @@ from explore_bt.types.moving import MovingObstacle
 from explore_bt.types.path import Path, Waypoint, way_along
 from explore_bt.types.pose import Pose2, Twist2, wrap_angle
 from explore_bt.types.result import MappingResult, Outcome, Result, Score
+from explore_bt.types.shared_graph import (
+    STRETCH_KEYFRAMES,
+    MapFit,
+    SharedEdge,
+    SharedKeyframe,
+    SharedStretch,
+)
 from explore_bt.types.structure import MapStructure, PoseGraph2, Voxels
 
 __all__ = [
     "FREE",
     "OCCUPIED",
+    "STRETCH_KEYFRAMES",
     "UNKNOWN",
     "Battery",
     "BodyFault",
@@ -50,6 +58,7 @@ __all__ = [
     "HalfPlaneMark",
     "Health",
     "Imu",
+    "MapFit",
     "MapStructure",
     "MappingResult",
     "Mate",
@@ -68,6 +77,9 @@ __all__ = [
     "Scan2D",
     "Score",
     "SectorMark",
+    "SharedEdge",
+    "SharedKeyframe",
+    "SharedStretch",
     "Trajectory",
     "Twist2",
     "Verdict",

@@ -53,6 +53,7 @@ class Result:
         left_open: what was not explored and why, one sentence each.
         slam: the SLAM plugin's own figures (``loop_closures``, ``keyframes``, ...).
         mocked: paths of the leaves that a script played; none in a run that counts.
+        not_merged: whose maps are not part of the map of all and why, one sentence each.
     """
 
     outcome: Outcome
@@ -74,6 +75,7 @@ class Result:
     left_open: tuple[str, ...] = ()
     slam: dict[str, float] = field(default_factory=dict)
     mocked: tuple[str, ...] = ()
+    not_merged: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, object]:
         """Plain values, ready for JSON."""

@@ -12,6 +12,19 @@ metres = st.floats(-150.0, 150.0)
 points = st.lists(st.tuples(st.floats(-20, 20), st.floats(-20, 20)), max_size=40)
 
 
+def test_what_a_mate_tells_of_itself_is_moved_into_another_map_as_a_whole() -> None:
+    stop, ahead = np.array([[1.0, 0.0], [2.0, 0.0]]), np.array([[3.0, 1.0]])
+    told = Presence(
+        1.0, 1.05, Pose2(1.0, 0.0, 0.0), Twist2(0.3, 0.1), 0.25, 0.5, stop, ahead, ((4.0, 0.0), (0.0, 0.0))
+    )
+    moved = told.moved(Pose2(10.0, 0.0, np.pi / 2))
+    assert moved.T_map_base.as_array() == pytest.approx([10.0, 1.0, np.pi / 2])
+    assert moved.stop == pytest.approx(np.array([[10.0, 1.0], [10.0, 2.0]]))
+    assert moved.ahead == pytest.approx(np.array([[9.0, 3.0]]))
+    assert moved.claims == (pytest.approx((10.0, 4.0)), pytest.approx((10.0, 0.0)))
+    assert (moved.stamp_s, moved.twist, moved.doing) == (told.stamp_s, told.twist, told.doing)
+
+
 @settings(max_examples=60, deadline=None)
 @given(
     x=metres,

@@ -7,9 +7,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from explore_bt.fleet import TILE_CELLS, TeamMap, Tile, TileCutter
-from explore_bt.types import FREE, OCCUPIED, UNKNOWN, GridWindow, OccupancyGrid
+from explore_bt.types import FREE, OCCUPIED, UNKNOWN, GridWindow, MapFit, OccupancyGrid, Pose2
 
 RESOLUTION_M = 0.05
+SAME = MapFit.rigid(Pose2.identity())
 
 
 class Maps:
@@ -80,6 +81,8 @@ def test_whatever_is_drawn_and_told_the_map_is_the_one_put_together_slowly(seed:
     rng = np.random.default_rng(seed)
     maps = Maps()
     team_map, told = TeamMap(maps), {}
+    for sender in ("r0", "r1", "r2"):
+        team_map.lay(sender, SAME)
     before = team_map.grid()
     for step in range(1, 12):
         what = rng.integers(4)
@@ -90,8 +93,9 @@ def test_whatever_is_drawn_and_told_the_map_is_the_one_put_together_slowly(seed:
             window = GridWindow(row, col, row + int(rng.integers(1, 6)), col + int(rng.integers(1, 6)))
             maps.draw(window, random_cells(rng, (window.row1 - window.row0, window.col1 - window.col0)))
         else:
-            place, sender = (int(rng.integers(-2, 3)), int(rng.integers(-2, 3))), f"r{rng.integers(3)}"
-            revision = step if what == 2 else int(rng.integers(1, step + 1))
+            place, who = (int(rng.integers(-2, 3)), int(rng.integers(-2, 3))), int(rng.integers(3))
+            sender = f"r{who}"
+            revision = 3 * (step if what == 2 else int(rng.integers(1, step + 1))) + who
             tile = Tile(revision, RESOLUTION_M, place, random_cells(rng, (TILE_CELLS, TILE_CELLS)))
             there = told.get((sender, place))
             assert team_map.put(sender, tile) == (there is None or there.revision < revision)
@@ -115,6 +119,7 @@ def test_alone_the_map_is_the_robots_own() -> None:
 def test_the_map_is_the_same_object_while_nothing_changes() -> None:
     maps = Maps()
     team_map = TeamMap(maps)
+    team_map.lay("bob", SAME)
     team_map.put("bob", Tile(1, RESOLUTION_M, (0, 0), np.zeros((TILE_CELLS, TILE_CELLS), dtype=np.int8)))
     assert team_map.grid() is team_map.grid()
 
@@ -131,6 +136,7 @@ def test_tiles_cut_from_a_map_bring_a_mate_exactly_what_is_known(seed: int) -> N
     rng = np.random.default_rng(seed)
     maps, cutter = Maps(), TileCutter()
     team_map, revision = TeamMap(Maps(shape=(10, 10), first=(500, 500))), -1
+    team_map.lay("ada", SAME)
     for number in range(5):
         row, col = (int(rng.integers(0, size - 20)) for size in maps.cells.shape)
         maps.draw(GridWindow(row, col, row + 20, col + 20), random_cells(rng, (20, 20)))
@@ -143,3 +149,40 @@ def test_tiles_cut_from_a_map_bring_a_mate_exactly_what_is_known(seed: int) -> N
         revision = grid.revision
         assert as_known(team_map.grid()) == as_known(grid)
     assert list(cutter.changed(maps.grid(), None, 99)) == [], "nothing is cut twice"
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 100_000), x=st.floats(-9, 9), y=st.floats(-9, 9), yaw=st.floats(-3.2, 3.2))
+def test_a_cell_is_what_the_mate_has_at_its_centre_however_the_maps_lie(
+    seed: int, x: float, y: float, yaw: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    T_ours_theirs = Pose2(x, y, yaw)
+    team_map, tiles = TeamMap(Maps((10, 10))), {}
+    team_map.lay("bob", MapFit.rigid(T_ours_theirs))
+    for place in ((0, 0), (1, 0), (-3, 2)):
+        tiles[place] = Tile(1, RESOLUTION_M, place, random_cells(rng, (TILE_CELLS, TILE_CELLS)))
+        team_map.put("bob", tiles[place])
+    grid = team_map.grid()
+    cells = np.argwhere(np.ones(grid.shape, dtype=np.bool_))
+    there = np.floor(T_ours_theirs.inverse().apply(grid.centers_of(cells)) / RESOLUTION_M + 1e-6).astype(int)
+    for (row, col), (i, j) in zip(cells[::37].tolist(), there[::37].tolist(), strict=True):
+        tile = tiles.get((i // TILE_CELLS, j // TILE_CELLS))
+        expected = UNKNOWN if tile is None else tile.cells[j % TILE_CELLS, i % TILE_CELLS]
+        assert grid.cells[row, col] == expected
+
+
+def test_a_mate_whose_map_nobody_can_place_is_not_drawn_and_is_taken_out_again() -> None:
+    maps = Maps()
+    maps.draw(GridWindow(3, 3, 9, 9), np.full((6, 6), FREE, dtype=np.int8))
+    team_map = TeamMap(maps)
+    cells = np.full((TILE_CELLS, TILE_CELLS), OCCUPIED, dtype=np.int8)
+    assert team_map.put("bob", Tile(1, RESOLUTION_M, (0, 0), cells))
+    assert team_map.grid() is maps.grid()
+    team_map.lay("bob", MapFit.rigid(Pose2(1.0, 0.0, 0.7)))
+    assert len(as_known(team_map.grid())) > 0.9 * TILE_CELLS**2
+    team_map.lay("bob", MapFit.rigid(Pose2(30.0, 0.0, 0.7)))
+    theirs = as_known(team_map.grid()).keys() - as_known(maps.grid()).keys()
+    assert min(col * RESOLUTION_M for col, _ in theirs) > 27.0
+    team_map.lay("bob", None)
+    assert as_known(team_map.grid()) == as_known(maps.grid())

@@ -36,7 +36,7 @@ def test_the_others_are_left_to_their_own_processes(tmp_path: Path) -> None:
     [
         ("zenoh", STARTS, "bb", 'there is no robot "bb".*did you mean "b"'),
         ("local", STARTS, "b", "write team: {use: zenoh}"),
-        ("zenoh", ("", STARTS[1]), "b", "nobody knows where a begins"),
+        ("zenoh", ("", STARTS[1]), "b", "nobody knows where a begins.*or start: unknown"),
     ],
 )
 def test_what_cannot_be_is_said_before_anything_runs(
@@ -44,3 +44,12 @@ def test_what_cannot_be_is_said_before_anything_runs(
 ) -> None:
     with pytest.raises(UserError, match=words):
         only_robot(mission(tmp_path, team, starts), name)
+
+
+def test_a_start_that_nobody_knows_is_said_so(tmp_path: Path) -> None:
+    both = mission(tmp_path, "zenoh", ("start: unknown, ", STARTS[1]))
+    assert [(robot.start is None, robot.knows_start) for robot in both.robots] == [
+        (True, False),
+        (False, True),
+    ]
+    assert [robot.name for robot in only_robot(both, "a").robots] == ["a"]

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from explore_bt.runtime.walking_distance import WalkingDistance, spare_of_walkers_m
@@ -37,12 +37,13 @@ def test_on_open_floor_it_is_the_straight_line(x, y, at_x, at_y, radius_m) -> No
 
 
 @settings(deadline=None)
+@example(x=1.375, y=1.0, at_x=0.5, at_y=0.0, door=0.0)
 @given(st.floats(1.3, 2.0), near, st.floats(-1.0, 0.7), near, st.floats(-1.5, 1.5))
 def test_round_a_wall_it_is_never_more_than_the_shortest_way(x, y, at_x, at_y, door) -> None:
-    """Through the best place in the door; a body cannot pass as near to the posts as that."""
+    """Through the best place in the door, but for the cells that both ends lie in."""
     (found,) = distance(floor(wall=True, door=door), (x, y)).to(np.array([[at_x, at_y]]))
     exact = min(through(x, y, at_x, at_y, door + k) for k in np.linspace(-0.5, 0.5, 81))
-    assert math.hypot(at_x - x, at_y - y) - 1e-9 <= found <= exact + CELL
+    assert math.hypot(at_x - x, at_y - y) - 1e-9 <= found <= exact + math.sqrt(2.0) * CELL
 
 
 def through(x: float, y: float, at_x: float, at_y: float, gap_y: float) -> float:

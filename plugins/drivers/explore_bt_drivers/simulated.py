@@ -70,6 +70,7 @@ SimulationT = TypeVar("SimulationT", bound=Simulated)
 class SimulatedDriver(Driver, Generic[SimulationT]):
     """The way of commands and measurements; ``setup`` has to give it its simulation."""
 
+    is_simulated = True
     _simulation: SimulationT | None = None
     _truth: GroundTruth | None = None
     _start: Pose2 | None = None

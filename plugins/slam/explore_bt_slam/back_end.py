@@ -67,6 +67,11 @@ class BackEnd:
         return self._graph.edges
 
     @property
+    def graph(self) -> PoseGraph:
+        """For whoever brings guests into it; everybody else asks for ``poses`` and ``edges``."""
+        return self._graph
+
+    @property
     def closures(self) -> int:
         """How many constraints were found by place."""
         return self._closures

@@ -17,7 +17,13 @@ _OLD_SHARE = 0.03
 _GATE = 16.3  # χ² of three degrees of freedom, 99.9 %
 
 
-def agree(one: Edge, other: Edge, poses: NDArray[np.float64], covariances: NDArray[np.float64]) -> bool:
+def agree(
+    one: Edge,
+    other: Edge,
+    poses: NDArray[np.float64],
+    covariances: NDArray[np.float64],
+    old_poses: NDArray[np.float64] | None = None,
+) -> bool:
     """Whether two closures say the same about the drift.
 
     Around the loop a → b → b' → a' → a the known motions and the two closures must cancel.
@@ -27,8 +33,9 @@ def agree(one: Edge, other: Edge, poses: NDArray[np.float64], covariances: NDArr
         other: the same.
         poses: (N, 3) float64 keyframe poses.
         covariances: (N, 3, 3) float64 relative to the newest keyframe, see ``relative_covariances``.
+        old_poses: (M, 3) float64, where the old keyframes are another robot's.
     """
-    old = between(poses, other.a, one.a)
+    old = between(poses if old_poses is None else old_poses, other.a, one.a)
     loop = (
         one.relative.compose(between(poses, one.b, other.b)).compose(other.relative.inverse()).compose(old)
     ).as_array()
@@ -39,7 +46,10 @@ def agree(one: Edge, other: Edge, poses: NDArray[np.float64], covariances: NDArr
 
 
 def largest_consistent(
-    edges: Sequence[Edge], poses: NDArray[np.float64], covariances: NDArray[np.float64]
+    edges: Sequence[Edge],
+    poses: NDArray[np.float64],
+    covariances: NDArray[np.float64],
+    old_poses: NDArray[np.float64] | None = None,
 ) -> list[Edge]:
     """The last edge and as many others as agree with it and with one another, found greedily.
 
@@ -47,10 +57,11 @@ def largest_consistent(
         edges: at least one.
         poses: see ``agree``.
         covariances: see ``agree``.
+        old_poses: see ``agree``.
     """
     chosen = [edges[-1]]
     for edge in reversed(edges[:-1]):
-        if all(agree(edge, other, poses, covariances) for other in chosen):
+        if all(agree(edge, other, poses, covariances, old_poses) for other in chosen):
             chosen.append(edge)
     return chosen[::-1]
 

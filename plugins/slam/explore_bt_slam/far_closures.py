@@ -18,7 +18,7 @@ from explore_bt_slam.local_map import gather_points, gather_surfels, stretch_abo
 from explore_bt_slam.point_to_line import Alignment, align
 from explore_bt_slam.pose_graph import Edge, closure_edge
 
-__all__ = ["FarClosureFinder", "FarRule", "Sighting"]
+__all__ = ["FarClosureFinder", "FarRule", "Sighting", "unrivalled"]
 
 _CELL_M = 0.1
 _QUERY_POINTS = 150
@@ -103,10 +103,10 @@ class FarClosureFinder:
             return []
         self._tried_m = keyframes[newest].driven_m
         turns = {p: min(self._rule.sigmas * math.sqrt(covariances[p, 2, 2]) + 0.1, math.pi) for p in places}
-        piece = self._piece(keyframes, poses, newest)
+        piece = self.piece(keyframes, poses, newest)
         found = self.sightings(keyframes, poses, piece, float(poses[newest, 2]), turns)
-        best = _unrivalled(found, self._rule.ambiguity)
-        fitted = None if best is None else self._fitted(keyframes, poses, keyframes[newest], best)
+        best = unrivalled(found, self._rule.ambiguity)
+        fitted = None if best is None else self.fitted(keyframes, poses, keyframes[newest], best)
         if best is None or fitted is None:
             return []
         edge = closure_edge(poses, best.place, newest, fitted)
@@ -166,8 +166,8 @@ class FarClosureFinder:
             scan: what is to be placed.
             sightings: of this scan at every place.
         """
-        best = _unrivalled(sightings, self._rule.ambiguity)
-        found = None if best is None else self._fitted(keyframes, poses, scan, best)
+        best = unrivalled(sightings, self._rule.ambiguity)
+        found = None if best is None else self.fitted(keyframes, poses, scan, best)
         return None if best is None or found is None else (best.place, found.pose)
 
     def _places(
@@ -190,13 +190,20 @@ class FarClosureFinder:
                 last_m = driven_m
         return chosen
 
-    def _piece(
+    def piece(
         self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], newest: int
     ) -> NDArray[np.float64]:
         """(N, 2): what was seen over the last metres, from the newest keyframe."""
         since_m = keyframes[newest].driven_m - self._rule.stretch_m
         recent = [k for k in range(newest, max(newest - 16, -1), -1) if keyframes[k].driven_m >= since_m]
         return _from(poses[newest], gather_points(keyframes, poses, recent), self._rule.reach_m)
+
+    def piece_about(
+        self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], middle: int
+    ) -> NDArray[np.float64]:
+        """(N, 2): what was seen over the metres before and after a keyframe, from there."""
+        stretch = stretch_about(keyframes, middle, 0.5 * self._rule.stretch_m)
+        return _from(poses[middle], gather_points(keyframes, poses, stretch), self._rule.reach_m)
 
     def _grid(self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], place: int) -> ScoreGrid:
         """A place as it looks from its middle keyframe; hardly changes when the graph moves.
@@ -213,7 +220,7 @@ class FarClosureFinder:
             del self._grids[next(iter(self._grids))]
         return known[1]
 
-    def _fitted(
+    def fitted(
         self, keyframes: Sequence[Keyframe], poses: NDArray[np.float64], scan: Keyframe, sighting: Sighting
     ) -> Alignment | None:
         """The sighting refined, if the scan fits the place's lines and looks through no wall."""
@@ -267,7 +274,8 @@ def _can_be_here(off: NDArray[np.float64], spread: NDArray[np.float64], rule: Fa
     return float(off @ np.linalg.solve(wide, off)) <= rule.sigmas**2
 
 
-def _unrivalled(sightings: Iterable[Sighting], ambiguity: float) -> Sighting | None:
+def unrivalled(sightings: Iterable[Sighting], ambiguity: float) -> Sighting | None:
+    """The best, unless a clearly different pose comes to more than a share of its score."""
     ranked = sorted(sightings, key=lambda each: -each.score)
     for other in ranked[1:]:
         is_other = (

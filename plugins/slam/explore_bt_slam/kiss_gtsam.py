@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
-from explore_bt.interfaces import API_VERSION, PluginOptions, RobotContext, Slam
+from explore_bt.interfaces import API_VERSION, GraphShare, PluginOptions, RobotContext, Slam
 from explore_bt.types import (
     Estimate,
     GridWindow,
@@ -25,6 +25,7 @@ from explore_bt.types import (
 )
 from explore_bt_slam.cloud_pipeline import CloudPipeline
 from explore_bt_slam.cloud_warm_up import warm_up_clouds
+from explore_bt_slam.kiss_share import KissShare
 from explore_bt_slam.options import KissGtsamOptions
 from explore_bt_slam.pipeline import Pipeline
 from explore_bt_slam.storage import read_arrays
@@ -103,6 +104,10 @@ class KissGtsam(Slam):
     def structure(self) -> MapStructure:
         """The pose graph, and the voxels if the lidar is a 3D one."""
         return self._pipeline.structure()
+
+    def graph_share(self) -> GraphShare:
+        """Keyframes and graph for team mates, and theirs in one's own graph."""
+        return KissShare(lambda: self._pipeline.back)
 
     def save(self, folder: Path) -> None:
         """One file, ``slam.npz``: keyframes, graph, kept sweeps, trajectory."""

@@ -11,7 +11,7 @@ from explore_bt.types import Pose2
 from explore_bt_slam.keyframes import Keyframe
 from explore_bt_slam.surfels import SurfelMap
 
-__all__ = ["gather_points", "gather_surfels", "stretch_about", "trusted_neighbours"]
+__all__ = ["gather_points", "gather_surfels", "one_every", "stretch_about", "trusted_neighbours"]
 
 _RECENT = 12
 _MOST = 60
@@ -40,6 +40,15 @@ def trusted_neighbours(
     chosen = np.flatnonzero(wanted)
     nearest = chosen[np.argsort(distance[chosen], kind="stable")][:_MOST]
     return sorted(int(index) for index in nearest)
+
+
+def one_every(keyframes: Sequence[Keyframe], spacing_m: float) -> list[int]:
+    """The first keyframe, and then one every so many metres of way."""
+    chosen: list[int] = []
+    for index, keyframe in enumerate(keyframes):
+        if not chosen or keyframe.driven_m - keyframes[chosen[-1]].driven_m >= spacing_m:
+            chosen.append(index)
+    return chosen
 
 
 def stretch_about(keyframes: Sequence[Keyframe], middle: int, half_m: float) -> list[int]:

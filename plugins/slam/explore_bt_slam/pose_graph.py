@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import gtsam
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explore_bt.types import Pose2
+from explore_bt_slam.guests import Guests, mate_of
 from explore_bt_slam.point_to_line import Alignment
 from explore_bt_slam.weighing import weighed
 
@@ -33,7 +34,7 @@ class Edge:
     """A measured relative pose between two keyframes.
 
     Attributes:
-        a, b: keyframes; ``relative`` is ``T_a_b``.
+        a, b: keyframes, of other robots by their ``guest_key``; ``relative`` is ``T_a_b``.
         covariance: (3, 3) float64 over x, y (m²), yaw (rad²), in the axes of ``b``.
         is_closure: found by place, not by driving: goes in under a robust kernel.
     """
@@ -62,13 +63,18 @@ def closure_edge(poses: NDArray[np.float64], old: int, newest: int, found: Align
 
 
 class PoseGraph:
-    """Best poses of all keyframes under all constraints."""
+    """Best poses of all keyframes under all constraints.
+
+    Those of other robots may come in as guests: they move, and pull, like one's own, but no list of keyframes
+    or constraints holds them.
+    """
 
     def __init__(self) -> None:
         self._isam = gtsam.ISAM2(_parameters())
         self._poses = np.zeros((0, 3))
         self._edges: list[Edge] = []
         self._refused: list[Edge] = []
+        self._guests: Guests[Edge] = Guests()
         self._weighed = 0
         self._lately: deque[bool] = deque(maxlen=2 * _RECONSIDERED)
 
@@ -88,8 +94,8 @@ class PoseGraph:
         return sum(edge.is_closure for edge in self._edges)
 
     def pose(self, index: int) -> Pose2:
-        """A keyframe's pose."""
-        x, y, yaw = self._poses[index]
+        """A keyframe's pose; also a guest's, by its key."""
+        x, y, yaw = self._poses[index] if mate_of(index) < 0 else self._guests.poses[index]
         return Pose2(float(x), float(y), float(yaw))
 
     def begin(self, pose: Pose2) -> None:
@@ -118,13 +124,51 @@ class PoseGraph:
         self._edges = list(edges)
         self._poses = poses.copy()
 
+    def receive(self, poses: Mapping[int, Pose2], edges: Sequence[Edge]) -> None:
+        """Guests that have not been here before, tied to the graph by ``edges``, and more about them."""
+        self._guests.admit(poses, edges)
+        self._settle()
+
+    def follow(self, poses: Mapping[int, Pose2], steps: Sequence[Edge]) -> None:
+        """More keyframes of a guest that is here, each reached by a step; cheap."""
+        factors, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
+        for key, pose in poses.items():
+            values.insert(key, _gtsam(pose))
+        for edge in steps:
+            factors.add(_factor(edge, is_robust=False))
+        self._isam.update(factors, values)
+        self._guests.admit(poses, steps)
+
+    def tie(self, edges: Sequence[Edge]) -> list[Edge]:
+        """Put in closures of guests that the graph finds credible, and return them."""
+        taken = [edge for edge in edges if self.surprise(edge) <= _CREDIBLE]
+        if taken:
+            self._take(taken)
+        return taken
+
+    def loosen(self, edges: Sequence[Edge]) -> None:
+        """Take constraints of guests out again."""
+        going = {id(edge) for edge in edges}
+        self._guests.dismiss(lambda edge: id(edge) in going)
+        self._settle()
+
+    def send_off(self, mate: int) -> None:
+        """Take all keyframes of a guest out again, and whatever they have done."""
+        self._guests.dismiss(lambda edge: mate in (mate_of(edge.a), mate_of(edge.b)), mate)
+        self._settle()
+
     def _settle(self) -> None:
         """After a large move iSAM's one step is not enough: Levenberg–Marquardt over everything."""
         factors, values = self._whole(self._poses, self._edges)
         parameters = gtsam.LevenbergMarquardtParams()
         parameters.setMaxIterations(_SETTLING)
         settled = gtsam.LevenbergMarquardtOptimizer(factors, values, parameters).optimize()
-        self.restore(np.asarray(gtsam.utilities.extractPose2(settled)), self._edges)
+        self.restore(self._own(np.asarray(gtsam.utilities.extractPose2(settled))), self._edges)
+
+    def _own(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        """One's own of all poses in the order of their keys; the guests are moved along."""
+        self._guests.move(rows[len(self._poses) :])
+        return rows[: len(self._poses)].copy()
 
     def _whole(
         self, poses: NDArray[np.float64], edges: Sequence[Edge]
@@ -134,7 +178,9 @@ class PoseGraph:
         factors.add(gtsam.PriorFactorPose2(0, _gtsam(first), gtsam.noiseModel.Diagonal.Sigmas(_PRIOR_SIGMAS)))
         for index, pose in enumerate(poses):
             values.insert(index, gtsam.Pose2(*map(float, pose)))
-        for edge in edges:
+        for key, pose in self._guests.poses.items():
+            values.insert(key, gtsam.Pose2(*map(float, pose)))
+        for edge in (*edges, *self._guests.edges):
             factors.add(_factor(edge, edge.is_closure))
         return factors, values
 
@@ -171,7 +217,7 @@ class PoseGraph:
         steps = [edge for edge in self._edges if not edge.is_closure]
         offered = [edge for edge in self._edges if edge.is_closure] + self._refused
         factors, values = self._whole(self._poses, steps)
-        poses, is_kept = weighed(factors, values, [_factor(edge, is_robust=False) for edge in offered])
+        rows, is_kept = weighed(factors, values, [_factor(edge, is_robust=False) for edge in offered])
         kept = [edge for edge, keeps in zip(offered, is_kept, strict=True) if keeps]
         self._weighed = len(self._refused)
         if len(kept) <= before:
@@ -179,7 +225,7 @@ class PoseGraph:
         self._refused = [edge for edge, keeps in zip(offered, is_kept, strict=True) if not keeps]
         self._weighed = len(self._refused)
         self._lately.clear()
-        self.restore(poses, steps + kept)
+        self.restore(self._own(rows), steps + kept)
         return [edge for edge, keeps in zip(offered[before:], is_kept[before:], strict=True) if keeps]
 
     def _take(self, taken: Sequence[Edge]) -> None:
@@ -188,7 +234,8 @@ class PoseGraph:
             self._isam.update()
         self._add(taken, is_robust=True, replaced=indices)
         before, self._poses = self._poses, self._extract()
-        self._edges.extend(taken)
+        self._edges.extend(edge for edge in taken if not _is_guests(edge))
+        self._guests.admit({}, [edge for edge in taken if _is_guests(edge)])
         if np.hypot(*(self._poses - before)[:, :2].T).max() > _LARGE_M:
             self._settle()
 
@@ -216,7 +263,7 @@ class PoseGraph:
         return turn @ local @ turn.T
 
     def _extract(self) -> NDArray[np.float64]:
-        return np.asarray(gtsam.utilities.extractPose2(self._isam.calculateEstimate()))
+        return self._own(np.asarray(gtsam.utilities.extractPose2(self._isam.calculateEstimate())))
 
     def _add(self, edges: Sequence[Edge], is_robust: bool, replaced: Sequence[int] = ()) -> list[int]:
         factors = gtsam.NonlinearFactorGraph()
@@ -232,6 +279,10 @@ def _parameters() -> gtsam.ISAM2Params:
     parameters.relinearizeSkip = 1
     parameters.setFactorization("QR")  # Cholesky gives up where steps of metres and of millimetres meet
     return parameters
+
+
+def _is_guests(edge: Edge) -> bool:
+    return mate_of(edge.a) >= 0 or mate_of(edge.b) >= 0
 
 
 def _gtsam(pose: Pose2) -> gtsam.Pose2:

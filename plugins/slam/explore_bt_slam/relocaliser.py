@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from explore_bt.types import Pose2, wrap_angle
 from explore_bt_slam.far_closures import FarClosureFinder, Sighting
 from explore_bt_slam.keyframes import Keyframe
+from explore_bt_slam.local_map import one_every
 
 __all__ = ["Relocaliser"]
 
@@ -58,7 +59,7 @@ class Relocaliser:
             believed: where dead reckoning puts the robot now; only its changes count.
         """
         if self._search is None:
-            self._search = _Search(scan, believed, _spaced(keyframes))
+            self._search = _Search(scan, believed, one_every(keyframes, _SPACING_M))
         search = self._search
         now, search.places = search.places[:_PLACES_PER_SCAN], search.places[_PLACES_PER_SCAN:]
         turns = dict.fromkeys(now, np.pi)
@@ -76,15 +77,6 @@ class Relocaliser:
             return None
         self.forget()
         return place, seen.compose(search.believed.between(believed))
-
-
-def _spaced(keyframes: Sequence[Keyframe]) -> list[int]:
-    """One keyframe every two metres of way."""
-    chosen: list[int] = []
-    for index, keyframe in enumerate(keyframes):
-        if not chosen or keyframe.driven_m - keyframes[chosen[-1]].driven_m >= _SPACING_M:
-            chosen.append(index)
-    return chosen
 
 
 def _same(one: Pose2, other: Pose2) -> bool:

@@ -63,3 +63,25 @@ def test_one_is_paused_by_its_button_and_the_other_goes_on(live, see):
     seen.until(f"page.player.state.robots.get('bob').newest.state.distance_m > {stood_m} + 1")
     seen.page.click("#stop")
     seen.until("page.debug.over")
+
+
+def test_a_robot_is_drawn_where_the_picked_one_knows_it_and_not_at_all_where_it_does_not(live, see):
+    _, server = live
+    seen = see(server.url)
+    seen.until("page.debug.paused && page.debug.why === 'before the first tick'")
+    drawn = """(mate => {
+        const mates = mate ? [mate] : [], bob = { name: "bob" };
+        const ada = { name: "ada", state: { newest: { team: { mates } } } };
+        return import("./mate_frames.js").then(({ frameOf, moved }) => {
+            const { T, merged } = frameOf(ada, bob);
+            return [T && moved(T, 1, 0).map((each) => Math.round(100 * each) / 100), merged];
+        });
+    })"""
+    place = "{x: 2, y: 3, yaw: Math.PI / 2}"
+    assert seen.run(f"{drawn}(null)") == [None, False]
+    assert seen.run(f"{drawn}({{name: 'bob', T_ours_theirs: null, not_merged: 'x'}})") == [None, False]
+    assert seen.run(f"{drawn}({{name: 'bob', T_ours_theirs: {place}, not_merged: ''}})") == [[2, 4], True]
+    assert seen.run(f"{drawn}({{name: 'bob', T_ours_theirs: {place}, not_merged: 'to be checked'}})") == [
+        [2, 4],
+        False,
+    ]

@@ -1,5 +1,6 @@
 // What is drawn over the grid, one function a layer.
 
+import { frameOf, moved, turned } from "./mate_frames.js";
 import { flat } from "./run_state.js";
 
 export const LAYERS = {
@@ -17,16 +18,17 @@ export function drawLayers(map) {
   if (layers.has("scan")) scan(map, picked.state.newest.scan);
   if (layers.has("sectors")) (drawing.sectors ?? []).forEach((each) => sector(map, each));
   if (layers.has("half-planes")) (drawing.half_planes ?? []).forEach((each) => halfPlane(map, each));
-  const shown = scene.robots.filter((robot) => robot === picked || layers.has("robots"));
-  if (layers.has("driven")) shown.forEach((robot) => driven(map, robot));
+  const there = scene.robots.filter((robot) => robot === picked || layers.has("robots")).map((robot) => [robot, frameOf(picked, robot).T]);
+  const shown = there.filter(([, T]) => T).map(([robot, T]) => [robot, { ...map, at: (x, y) => map.at(...moved(T, x, y)) }, T]);
+  if (layers.has("driven")) shown.forEach(([robot, its]) => driven(its, robot));
   if (layers.has("frontiers")) (drawing.frontiers ?? []).forEach((each) => frontier(map, each));
   if (layers.has("views")) (drawing.views ?? []).forEach((each) => view(map, each));
   if (layers.has("path")) planned(map, picked.state.newest.path);
   if (layers.has("waypoints")) waypoints(map, picked.state);
-  if (layers.has("claims")) shown.forEach((robot) => (robot.state.newest.team?.claims ?? []).forEach((each) => claim(map, robot, each)));
+  if (layers.has("claims")) shown.forEach(([robot, its]) => (robot.state.newest.team?.claims ?? []).forEach((each) => claim(its, robot, each)));
   if (layers.has("people")) (picked.state.newest.moving?.things ?? []).forEach((each) => person(map, each));
-  if (layers.has("truth")) shown.forEach((robot) => body(map, robot, flat(robot.state.newest.truth?.pose), true));
-  shown.forEach((robot) => body(map, robot, flat(robot.state.newest.pose?.pose), false));
+  if (layers.has("truth")) shown.forEach(([robot, , T]) => body(map, robot, turned(T, flat(robot.state.newest.truth?.pose)), true));
+  shown.forEach(([robot, , T]) => body(map, robot, turned(T, flat(robot.state.newest.pose?.pose)), false));
 }
 
 function scan({ pen, at, palette }, message) {

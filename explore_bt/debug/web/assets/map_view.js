@@ -4,6 +4,7 @@ import { colours, fitted, watch } from "./dom.js";
 import { after } from "./story.js";
 import { flat } from "./run_state.js";
 import { drawLayers } from "./map_layers.js";
+import { frameOf, moved } from "./mate_frames.js";
 
 const REACH = 12, MOST_WORDS = 4;
 
@@ -94,11 +95,11 @@ export class MapView {
     const scene = this.#scene, picked = scene?.robots.find((robot) => robot.name === scene.picked);
     if (!picked || !width) return;
     const grid = gridOf(picked.state.newest.map), pose = flat(picked.state.newest.pose?.pose);
-    const others = this.layers.has("maps") ? scene.robots.filter((robot) => robot !== picked && gridOf(robot.state.newest.map)) : [];
-    const drawn = [...others, ...(grid ? [picked] : [])].map((robot) => [robot.name, gridOf(robot.state.newest.map)]);
-    this.#place(drawn.map(([, each]) => each), pose, width, height);
+    const others = this.layers.has("maps") ? scene.robots.filter((robot) => robot !== picked && gridOf(robot.state.newest.map) && frameOf(picked, robot).merged) : [];
+    const drawn = [...others, ...(grid ? [picked] : [])].map((robot) => [robot.name, gridOf(robot.state.newest.map), frameOf(picked, robot).T]);
+    this.#place(drawn, pose, width, height);
     if (!this.#view) return;
-    for (const [name, each] of drawn) this.#drawGrid(pen, each, name);
+    for (const each of drawn) this.#drawGrid(pen, ...each);
     this.spots = [];
     drawLayers({
       pen, scene, picked, palette: this.#palette, layers: this.layers, spots: this.spots, time: scene.time, scale: this.#view.scale,
@@ -112,22 +113,26 @@ export class MapView {
     if (this.follow && pose && this.#view) Object.assign(this.#view, { x: pose.x, y: pose.y });
     if (this.#view && (this.#touched || !drawn.length)) return;
     if (!drawn.length) { if (pose) this.#view = { x: pose.x, y: pose.y, scale: 50 }; return; }
-    const left = Math.min(...drawn.map((each) => each.x)), low = Math.min(...drawn.map((each) => each.y));
-    const wide = Math.max(...drawn.map((each) => each.x + each.cols * each.size)) - left;
-    const high = Math.max(...drawn.map((each) => each.y + each.rows * each.size)) - low;
+    const corners = drawn.flatMap(([, { x, y, cols, rows, size }, T]) => [[0, 0], [cols, 0], [cols, rows], [0, rows]].map(([i, j]) => moved(T, x + i * size, y + j * size)));
+    const xs = corners.map(([x]) => x), ys = corners.map(([, y]) => y), left = Math.min(...xs), low = Math.min(...ys);
+    const wide = Math.max(...xs) - left, high = Math.max(...ys) - low;
     this.#view = { x: left + wide / 2, y: low + high / 2, scale: 0.92 * Math.min(width / wide, height / high) };
   }
 
-  #drawGrid(pen, grid, name) {
+  #drawGrid(pen, name, grid, T) {
     let picture = this.#pictures.get(name);
     if (picture?.grid !== grid || picture.palette !== this.#palette) {
       picture = { grid, palette: this.#palette, canvas: picture?.canvas ?? document.createElement("canvas") };
       this.#paint(picture.canvas, grid);
       this.#pictures.set(name, picture);
     }
-    const [left, top] = this.toScreen(grid.x, grid.y + grid.rows * grid.size), scale = this.#view.scale;
+    const scale = this.#view.scale;
+    pen.save();
+    pen.translate(...this.toScreen(...moved(T, grid.x, grid.y + grid.rows * grid.size)));
+    pen.rotate(-T.yaw);
     pen.imageSmoothingEnabled = scale * grid.size < 1;
-    pen.drawImage(picture.canvas, left, top, grid.cols * grid.size * scale, grid.rows * grid.size * scale);
+    pen.drawImage(picture.canvas, 0, 0, grid.cols * grid.size * scale, grid.rows * grid.size * scale);
+    pen.restore();
   }
 
   #paint(canvas, grid) {

@@ -35,6 +35,7 @@ class Mujoco(SimulatedDriver["Simulation"]):
     api_version = API_VERSION
     Options: ClassVar[type[PluginOptions]] = MujocoOptions
     films = True
+    shows_mates = False
 
     def __init__(self, options: PluginOptions) -> None:
         super().__init__(options)

@@ -48,14 +48,15 @@ class Sim2d(SimulatedDriver[Simulation]):
         options = self._options
         venue = Venue.of(options, context)
         world, arena = venue.world, venue.arena
-        self._start = venue.start(options, context)
-        stand = stand_of(world, context.resumed, options.radius) or self._start
-        _rehearse(world, options, stand, context, venue.crowd(options, context, self._start))
-        observable_floor(world, self._start.xy, options.radius, 0.0)
-        crowd = venue.crowd(options, context, self._start)
+        start = venue.start(options, context)
+        self._start = start if context.start is None else context.start
+        stand = stand_of(world, context.resumed, options.radius) or start
+        _rehearse(world, options, stand, context, venue.crowd(options, context, start))
+        observable_floor(world, start.xy, options.radius, 0.0)
+        crowd = venue.crowd(options, context, start)
         self._arena = arena
         self._simulation = Simulation(arena, options, stand, context, crowd)
-        self._truth = Sim2dTruth(arena, self._start, self._simulation, options.lidar_range)
+        self._truth = Sim2dTruth(arena, start, self._simulation, options.lidar_range)
 
     @property
     def clock(self) -> Clock:

@@ -16,6 +16,7 @@ from explore_bt.units import (
     Frequency,
     Jerk,
     Length,
+    PoseTriple,
     Speed,
 )
 
@@ -26,6 +27,9 @@ class Sim2dOptions(PluginOptions):
     """A round robot with lidar, IMU and wheels; noise figures are one standard deviation."""
 
     world: FilePath = Field(description="explore-bt world (YAML) or ROS map_server map (YAML)")
+    stand: PoseTriple | None = Field(
+        None, description="where the robot really stands, if its start is unknown or shall be wrong"
+    )
     radius: Length = Field(0.25, ge=0.05, le=2.0, description="radius of the circular footprint")
 
     beams: int = Field(360, ge=1, le=2000, description="lidar beams per turn; 360 to 720 are usual")

@@ -31,6 +31,10 @@ class Sim2dTruth(GroundTruth):
         """Where the robot is now, ``map`` frame."""
         return self._body.pose
 
+    def start(self) -> Pose2:
+        """Where the robot stood at first, whatever the mission says."""
+        return self._start
+
     def contacts(self) -> int:
         """Separate touches; 5 mm must come between before there can be another.
 

@@ -49,12 +49,13 @@ class Venue:
         return context.commons.get(("sim2d", options.world.resolve()), lambda: Venue(options, begin_s))
 
     def start(self, options: Sim2dOptions, context: RobotContext) -> Pose2:
-        """Where a robot begins, clear of those that came before it.
+        """Where a robot really begins, clear of those that came before it.
 
         Raises:
             WorldError: there is no room for it.
         """
-        start = choose_start(self.world, context.start, options.radius, self._starts)
+        wanted = context.start if options.stand is None else Pose2(*options.stand)
+        start = choose_start(self.world, wanted, options.radius, self._starts)
         self._starts[context.robot] = Taken(start.xy, options.radius)
         return start
 
