@@ -112,7 +112,11 @@ class WordAges:
 
     def tell(self) -> Clocks:
         """What the others need to know."""
-        known = {name: clock for name, clock in self._mates.items() if clock.life}
+        known = {
+            name: clock
+            for name, clock in self._mates.items()
+            if clock.life and math.isfinite(clock.lead_s.value)  # else none of its words has come yet
+        }
         return Clocks(self._life, {name: (clock.life, clock.lead_s.value) for name, clock in known.items()})
 
 
