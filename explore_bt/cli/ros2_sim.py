@@ -51,10 +51,10 @@ def ros2_sim(
         typer.Option(metavar="FILE", help="Write at the end what only a simulator knows, as JSON."),
     ] = None,
 ) -> None:
-    """Put the simulated robots of a mission behind ROS 2 topics, until Ctrl-C.
+    """Put a mission's simulated robots behind ROS 2 topics.
 
     A mission with driver: {use: ros2, use_sim_time: true} then drives them from another process. Of several
-    robots each has its name as namespace.
+    robots each has its name as namespace. It runs until Ctrl-C.
     """
     from explore_bt.interfaces import Bridge
     from explore_bt.runtime import StopFlag

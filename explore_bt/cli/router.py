@@ -27,10 +27,11 @@ def router(
     ] = None,
     team: Annotated[str, typer.Option(metavar="NAME", help="The team plugin of the robots.")] = "zenoh",
 ) -> None:
-    """Pass on what robots in processes of their own say, until Ctrl-C.
+    """Pass on what robots of a fleet say to one another.
 
-    Robots reach it with team: {use: zenoh, mode: client, connect: [ENDPOINT]}. It keeps nothing: one that
-    dies may be started again, and the robots find it. There is no token: who reaches it is heard.
+    Robots in processes of their own reach it with team: {use: zenoh, mode: client, connect: [ENDPOINT]}. It
+    runs until Ctrl-C and keeps nothing: one that dies may be started again, and the robots find it. There
+    is no token: who reaches it is heard.
     """
     from explore_bt.plugin import load_plugins
     from explore_bt.runtime import StopFlag
