@@ -34,7 +34,7 @@ class AuctionOptions(PluginOptions):
         description="further way that a place of 5 m² brings along; one that shows less brings less",
     )
     kept: float = Field(
-        0.8, ge=0.1, le=1.0, description="what the way to a place counts for who is on its way to it"
+        0.3, ge=0.1, le=1.0, description="what the way to a place counts for who is on its way to it"
     )
 
 
