@@ -7,6 +7,8 @@ import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from explore_bt.fleet.named import named_from, named_to_bytes
+
 __all__ = ["UNMEASURED_S", "Clocks", "WordAges", "clocks_from", "clocks_to_bytes"]
 
 UNMEASURED_S = 1.0
@@ -14,7 +16,7 @@ UNMEASURED_S = 1.0
 _WINDOW_S = 3.0
 """Simulated clocks slip against one another: what was found longer ago than twice this is forgotten."""
 _HEAD = struct.Struct("<QB")
-_LEAD = struct.Struct("<QdB")
+_LEAD = struct.Struct("<Qd")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +34,8 @@ class Clocks:
 
 
 def clocks_to_bytes(told: Clocks) -> bytes:
-    """Little endian; names as UTF-8, with their length before them."""
-    parts = [_HEAD.pack(told.life, len(told.leads))]
-    for name, (life, lead_s) in told.leads.items():
-        text = name.encode()
-        parts.append(_LEAD.pack(life, lead_s, len(text)) + text)
-    return b"".join(parts)
+    """The life, how many leads there are, and these."""
+    return _HEAD.pack(told.life, len(told.leads)) + named_to_bytes(_LEAD, told.leads)
 
 
 def clocks_from(body: bytes) -> Clocks:
@@ -47,14 +45,10 @@ def clocks_from(body: bytes) -> Clocks:
         ValueError, struct.error: cut off or damaged.
     """
     life, count = _HEAD.unpack_from(body)
-    at, leads = _HEAD.size, {}
-    for _ in range(count):
-        of, lead_s, length = _LEAD.unpack_from(body, at)
-        at += _LEAD.size + length
-        if at > len(body) or not math.isfinite(lead_s):
-            raise ValueError("a name is cut off, or a number is not finite")
-        leads[body[at - length : at].decode()] = (of, lead_s)
-    return Clocks(life, leads)
+    leads = list(named_from(_LEAD, body[_HEAD.size :]))
+    if len(leads) != count or not all(math.isfinite(lead_s) for _, (_, lead_s) in leads):
+        raise ValueError(f"{len(leads)} leads of {count}, or a number is not finite")
+    return Clocks(life, {name: (of, lead_s) for name, (of, lead_s) in leads})
 
 
 class WordAges:

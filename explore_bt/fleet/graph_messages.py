@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from explore_bt.fleet.named import named_from, named_to_bytes
 from explore_bt.types import STRETCH_KEYFRAMES, Pose2, SharedEdge, SharedKeyframe, SharedStretch
 
 __all__ = [
@@ -22,7 +23,7 @@ __all__ = [
     "stretch_to_bytes",
 ]
 
-_FIT = struct.Struct("<dddB")
+_FIT = struct.Struct("<ddd")
 _KEYFRAME = struct.Struct("<IddH")
 _STRETCH = struct.Struct("<IBH")
 _EDGE = np.dtype(
@@ -45,12 +46,8 @@ class Fits:
 
 
 def fits_to_bytes(told: Fits) -> bytes:
-    """Names as UTF-8, with their length before them."""
-    parts = []
-    for name, T in told.T_ours_theirs.items():
-        text = name.encode()
-        parts.append(_FIT.pack(T.x, T.y, T.yaw_rad, len(text)) + text)
-    return b"".join(parts)
+    """For each mate x, y, yaw."""
+    return named_to_bytes(_FIT, {name: (T.x, T.y, T.yaw_rad) for name, T in told.T_ours_theirs.items()})
 
 
 def fits_from(body: bytes) -> Fits:
@@ -59,14 +56,10 @@ def fits_from(body: bytes) -> Fits:
     Raises:
         ValueError, struct.error: cut off or damaged.
     """
-    at, found = 0, {}
-    while at < len(body):
-        x, y, yaw, length = _FIT.unpack_from(body, at)
-        at += _FIT.size + length
-        if at > len(body) or not np.isfinite([x, y, yaw]).all():
-            raise ValueError("a name is cut off, or a number is not finite")
-        found[body[at - length : at].decode()] = Pose2(x, y, yaw)
-    return Fits(found)
+    found = dict(named_from(_FIT, body))
+    if not all(np.isfinite(figures).all() for figures in found.values()):
+        raise ValueError("a number is not finite")
+    return Fits({name: Pose2(*figures) for name, figures in found.items()})
 
 
 def keyframe_to_bytes(told: SharedKeyframe) -> bytes:

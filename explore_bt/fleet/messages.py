@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,6 @@ MESSAGE_VERSION = 2
 _HEAD = struct.Struct("<BB")
 _PRESENCE = struct.Struct("<dd3d2fff2BhHHH")
 _TILE = struct.Struct("<Qfii")
-_IS_PRESENCE, _IS_TILE, _IS_CLOCKS, _IS_KEYFRAME, _IS_STRETCH, _IS_FITS = 1, 2, 3, 4, 5, 6
 _KNOWS_START, _SHARES_GRAPH = 1, 2
 _STEP_M = 0.005
 """Places near the robot are told to half a centimetre, from it."""
@@ -101,20 +101,8 @@ Message = Presence | Tile | Clocks | Fits | SharedKeyframe | SharedStretch
 
 def encode(message: Message) -> bytes:
     """The bytes; little endian, lengths first."""
-    match message:
-        case Presence():
-            kind, body = _IS_PRESENCE, _presence_bytes(message)
-        case Tile():
-            kind, body = _IS_TILE, _tile_bytes(message)
-        case Clocks():
-            kind, body = _IS_CLOCKS, clocks_to_bytes(message)
-        case Fits():
-            kind, body = _IS_FITS, fits_to_bytes(message)
-        case SharedKeyframe():
-            kind, body = _IS_KEYFRAME, keyframe_to_bytes(message)
-        case SharedStretch():
-            kind, body = _IS_STRETCH, stretch_to_bytes(message)
-    return _HEAD.pack(MESSAGE_VERSION, kind) + body
+    kind, to_bytes = _WRITERS[type(message)]
+    return _HEAD.pack(MESSAGE_VERSION, kind) + to_bytes(message)
 
 
 def decode(payload: bytes) -> Message:
@@ -220,11 +208,13 @@ def _tile(body: bytes) -> Tile:
     return Tile(revision, round(resolution_m, 6), (col, row), cells)
 
 
-_READERS: Mapping[int, Callable[[bytes], Message]] = {
-    _IS_PRESENCE: _presence,
-    _IS_TILE: _tile,
-    _IS_CLOCKS: clocks_from,
-    _IS_FITS: fits_from,
-    _IS_KEYFRAME: keyframe_from,
-    _IS_STRETCH: stretch_from,
-}
+_KINDS: Sequence[tuple[int, type[Message], Callable[[Any], bytes], Callable[[bytes], Message]]] = (
+    (1, Presence, _presence_bytes, _presence),
+    (2, Tile, _tile_bytes, _tile),
+    (3, Clocks, clocks_to_bytes, clocks_from),
+    (4, SharedKeyframe, keyframe_to_bytes, keyframe_from),
+    (5, SharedStretch, stretch_to_bytes, stretch_from),
+    (6, Fits, fits_to_bytes, fits_from),
+)
+_WRITERS = {type_: (kind, to_bytes) for kind, type_, to_bytes, _ in _KINDS}
+_READERS = {kind: from_bytes for kind, _, _, from_bytes in _KINDS}
