@@ -115,8 +115,7 @@ class ZenohTeam(Team):
             return
         with self._lock:
             self._count += 1
-            word = _HEAD.pack(self._life, self._count) + payload
-            self._said[topic] = (self._count, word)
+            word = self._noted(topic, self._count, payload)
         drop = self._zenoh.CongestionControl.DROP
         try:
             session.put(f"{self._prefix}/{self._robot}/{topic}", word, congestion_control=drop)
@@ -130,8 +129,7 @@ class ZenohTeam(Team):
             return
         with self._lock:
             self._often_count += 1
-            word = _HEAD.pack(self._life, self._often_count | _OFTEN) + payload
-            self._said[topic] = (self._often_count | _OFTEN, word)
+            word = self._noted(topic, self._often_count | _OFTEN, payload)
         try:
             if topic not in self._publishers:
                 self._publishers[topic] = session.declare_publisher(
@@ -168,6 +166,12 @@ class ZenohTeam(Team):
         return closing(opened("router", "router", listen=listen))
 
     # --- inside; what zenoh calls comes on its own threads ----------------------------------------------
+
+    def _noted(self, topic: str, number: int, payload: bytes) -> bytes:
+        """The word with its number, kept for those who ask."""
+        word = _HEAD.pack(self._life, number) + payload
+        self._said[topic] = (number, word)
+        return word
 
     @property
     def _all(self) -> Any:
