@@ -270,12 +270,7 @@ class DriveTo(Leaf):
         if self.until_seen <= 0.0 or self.robot.now_s() < self._next_look_s:
             return False
         self._next_look_s = self.robot.now_s() + _LOOK_PERIOD_S
-        mate = claimed_before(self.robot, self.goal.position)
-        if (
-            mate and self.goal.position != self._left
-        ):  # chosen once more it shows what the other place does not
-            self._left = self.goal.position
-            self.say(f"left to {mate}, which is on its way there too")
+        if self._is_left_to_mate():
             return True
         enough_m2 = _NOTHING_M2 if self._is_scrap else self.until_seen
         most_m2 = 0.0
@@ -284,6 +279,16 @@ class DriveTo(Leaf):
             if most_m2 >= enough_m2:
                 return False
         self.say(f"seen from afar: only {most_m2:.2f} m² would be new")
+        return True
+
+    def _is_left_to_mate(self) -> bool:
+        """Once for a goal: chosen again it shows what the mate's place does not."""
+        place = self.goal.position
+        mate = claimed_before(self.robot, place)
+        if not mate or place == self._left:
+            return False
+        self._left = place
+        self.say(f"left to {mate}, which is on its way there too")
         return True
 
     def _area_m2(self, place: tuple[float, float]) -> float:

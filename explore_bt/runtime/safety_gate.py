@@ -167,11 +167,12 @@ class SafetyGate:
         following = _state_after(self._let_go_of_brake(wanted, motion, dt_s), motion, dt_s)
         before = following if in_force_s > dt_s else motion
         way = way_to_rest(following, pose, before, self._limits, max(in_force_s, dt_s))
-        fault, whom = self._fault_on_the_way(way, following)
+        # a disc turning on the spot touches nothing that it does not touch already
+        moves_off = bool(np.any(way.poses[:, :2] - way.poses[0, :2]))
+        fault, whom = self._fault_on_the_way(way, following) if moves_off else ("", "")
         held_by = HeldBy.MATE if whom else HeldBy.OBSTACLE
         if not fault:
             held_by, fault = HeldBy.SOMEONE, self._fault_by_people(way, now_s)
-        moves_off = bool(np.any(way.poses[:, :2] - way.poses[0, :2]))
         if not fault and moves_off:
             held_by, (fault, whom) = HeldBy.MATE, fault_by_mates(way.poses, self._radius_m, self.mates, now_s)
         self.in_the_way = whom or self.in_the_way
@@ -210,8 +211,6 @@ class SafetyGate:
     def _fault_on_the_way(self, way: WayToRest, following: MotionState) -> tuple[str, str]:
         """What is too near to the way, and which team mate that is; empty where it is none."""
         ahead = way.poses
-        if not np.any(ahead[:, :2] - ahead[0, :2]):
-            return "", ""  # a disc turning on the spot touches nothing that it does not touch already
         on_grid = self._window.clearance_m(ahead[:, :2], between_cells=self._map_margin_m > 0.0)
         needed_m = self._radius_m + self._map_margin_m
         in_map = _shortfall(on_grid, needed_m, "obstacle or unknown space in the map")
