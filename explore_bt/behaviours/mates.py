@@ -15,7 +15,7 @@ _SPARE_M = 0.15
 
 def goes_before(robot: RobotServices, mate: Mate) -> bool:
     """Whether the mate has the way where both want it: all robots answer alike."""
-    return (mate.yields, mate.name) < (robot.team.yields, robot.team.name)
+    return mate.right_of_way < robot.team.right_of_way
 
 
 def mate_in_the_way(robot: RobotServices) -> Mate | None:

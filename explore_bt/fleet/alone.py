@@ -39,6 +39,11 @@ class Alone:
         self.doing = Doing.AT_WORK
 
     @property
+    def right_of_way(self) -> tuple[int, str]:
+        """Against that of a mate."""
+        return (self.yields, self.name)
+
+    @property
     def near(self) -> tuple[Mate, ...]:
         """Nobody."""
         return self.mates

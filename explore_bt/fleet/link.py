@@ -112,6 +112,11 @@ class TeamLink:
         return _INSISTS if self._now_s < self._insists_until_s else 0
 
     @property
+    def right_of_way(self) -> tuple[int, str]:
+        """Against that of a mate."""
+        return (self.yields, self.name)
+
+    @property
     def claims(self) -> tuple[tuple[float, float], ...]:
         """Where the robot goes to look, as it tells: nowhere while it is paused."""
         return () if self.is_paused else self._claims

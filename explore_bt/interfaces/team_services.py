@@ -30,6 +30,10 @@ class TeamServices(Protocol):
     def yields(self) -> int:
         """See ``Mate.yields``: the robot's own number."""
 
+    @property
+    def right_of_way(self) -> tuple[int, str]:
+        """See ``Mate.right_of_way``: the robot's own."""
+
     def claim(self, places: Sequence[tuple[float, float]]) -> None:
         """The robot goes to look from these, metres, ``map`` frame; what it claimed before is free."""
 

@@ -211,7 +211,7 @@ class Robot:
         straight_m = self.estimate().T_map_base.distance_to(goal)
         try:
             here = self.pilot.predict(self.estimate(), self.now_s()).T_map_base
-            around = standing(self.team.mates, here, goal, (self.team.yields, self.name))
+            around = standing(self.team.mates, here, goal, self.team.right_of_way)
             grids = grids_to_try(self.view().grid, around, here, self.footprint_radius_m)
             grid, path = first_path(
                 grids,

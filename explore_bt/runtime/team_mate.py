@@ -89,14 +89,14 @@ def without_mates(scan: Scan2D, pose: Pose2, mates: Sequence[Mate]) -> Scan2D:
     return replace(scan, ranges_m=cleared)
 
 
-def standing(mates: Sequence[Mate], here: Pose2, goal: Pose2, priority: tuple[int, str]) -> list[Mate]:
+def standing(mates: Sequence[Mate], here: Pose2, goal: Pose2, right_of_way: tuple[int, str]) -> list[Mate]:
     """The mates to plan around: who stands and has nowhere to go, and near by who stands and goes first.
 
     Who stands on the goal is none: it may be gone by then.
     """
     mates = [mate for mate in mates if _distance_m(mate, goal) > 2.0 * mate.radius_m + _ROOM_M]
     near = [mate for mate in mates if _distance_m(mate, here) < _FAR_M]
-    first = [mate for mate in near if (mate.yields, mate.name) < priority and mate.is_standing]
+    first = [mate for mate in near if mate.right_of_way < right_of_way and mate.is_standing]
     return list({mate.name: mate for mate in (*(mate for mate in mates if mate.is_parked), *first)}.values())
 
 

@@ -39,7 +39,7 @@ def give_word(pilot: Pilot, team: Alone | TeamLink, now_s: float) -> None:
 def _lets_pass(pilot: Pilot, team: Alone | TeamLink) -> bool:
     if pilot.held_by is not HeldBy.MATE:
         return False
-    before = {mate.name for mate in team.near if (mate.yields, mate.name) < (team.yields, team.name)}
+    before = {mate.name for mate in team.near if mate.right_of_way < team.right_of_way}
     return pilot.in_the_way in before
 
 

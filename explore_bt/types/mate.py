@@ -58,6 +58,11 @@ class Mate:
     yields: int = 0
 
     @property
+    def right_of_way(self) -> tuple[int, str]:
+        """The smaller one goes first."""
+        return (self.yields, self.name)
+
+    @property
     def is_parked(self) -> bool:
         """Whether it stands and has nowhere to go."""
         return not len(self.ahead) and self.is_standing
