@@ -99,24 +99,14 @@ def alone(camera: str) -> dict[str, Any]:
 def explore(seed: int, camera: str, folder: Path) -> dict[str, Any]:
     """The whole mission in this process, with everything that a user gets."""
     from explore_bt_drivers.mujoco import Mujoco
-    from explore_bt_drivers.mujoco.simulation import Simulation
-    from explore_bt_slam import KissGtsam
 
     from explore_bt.cli.sinks import make_sinks
     from explore_bt.mission import load_mission
     from explore_bt.plugin import load_plugins
     from explore_bt.runtime import StopFlag, run_mission
-    from explore_bt.runtime.lookout import Lookout
-    from explore_bt.runtime.observers import Observers
     from explore_bt.runtime.robot import Robot
 
-    watch, falls = Stopwatch(), []
-    watch.watch(Simulation, "wait_until", "driver")
-    watch.watch(KissGtsam, "update", "SLAM")
-    watch.watch(Lookout, "hear", "lookout of the gate")
-    watch.watch(Robot, "decide", "tree and planner")
-    watch.watch(Robot, "act", "control and gate")
-    watch.watch(Observers, "tick", "recording")
+    watch, falls = _watched_mission(), []
     close = Mujoco.close
 
     def counted(driver: Mujoco) -> None:
@@ -154,6 +144,25 @@ def explore(seed: int, camera: str, folder: Path) -> dict[str, Any]:
         "shares": {name: value / spent_s for name, value in watch.spent_s.items()},
         "closures": result.slam.get("loop_closures"),
     }
+
+
+def _watched_mission() -> Stopwatch:
+    """Counts what each part of a mission takes."""
+    from explore_bt_drivers.mujoco.simulation import Simulation
+    from explore_bt_slam import KissGtsam
+
+    from explore_bt.runtime.lookout import Lookout
+    from explore_bt.runtime.observers import Observers
+    from explore_bt.runtime.robot import Robot
+
+    watch = Stopwatch()
+    watch.watch(Simulation, "wait_until", "driver")
+    watch.watch(KissGtsam, "update", "SLAM")
+    watch.watch(Lookout, "hear", "lookout of the gate")
+    watch.watch(Robot, "decide", "tree and planner")
+    watch.watch(Robot, "act", "control and gate")
+    watch.watch(Observers, "tick", "recording")
+    return watch
 
 
 def main() -> None:
