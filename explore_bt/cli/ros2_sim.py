@@ -16,7 +16,7 @@ from explore_bt.cli.stopping import stopping_by_signal
 from explore_bt.errors import UserError
 
 if TYPE_CHECKING:
-    from explore_bt.interfaces import Driver, RobotContext
+    from explore_bt.interfaces import Bridge, Driver, RobotContext
     from explore_bt.plugin import Registry
 
 __all__ = ["ros2_sim"]
@@ -56,9 +56,6 @@ def ros2_sim(
     A mission with driver: {use: ros2, use_sim_time: true} then drives them from another process. Of several
     robots each has its name as namespace. It runs until Ctrl-C.
     """
-    from explore_bt.interfaces import Bridge
-    from explore_bt.runtime import StopFlag
-
     robots, registry = _robots(mission, set_, seed)
     bridge: type[Bridge] = registry.get("bridge", "ros2")
     settings = {
@@ -68,7 +65,22 @@ def ros2_sim(
         "stamped": stamped,
         "tf_topic": tf_topic,
     }
-    served = bridge(bridge.Options.model_validate(settings))
+    pace = "the system's time" if wall_time else f"/clock at {speed:g} times the speed of real time"
+    truths = _serve(bridge(bridge.Options.model_validate(settings)), robots, speed, pace)
+    if out is not None:
+        known = truths if len(truths) > 1 else next(iter(truths.values()))
+        out.write_text(json.dumps(known, indent=2) + "\n", encoding="utf-8")
+    for name, truth in truths.items():
+        contacts, touches = truth["contacts"], truth["touched_by_people"]
+        typer.echo(f"{name}: {truth['time_s']:.0f} s, {contacts} contacts, {touches} touches by people")
+
+
+def _serve(
+    bridge: Bridge, robots: list[tuple[Driver, RobotContext]], speed: float, pace: str
+) -> dict[str, dict[str, Any]]:
+    """Until Ctrl-C; what only the simulators know then, by robot."""
+    from explore_bt.runtime import StopFlag
+
     drivers = {context.robot: driver for driver, context in robots}
     what = ", ".join(dict.fromkeys(driver.name for driver in drivers.values()))
     typer.echo(f"{what}: getting ready")
@@ -77,19 +89,12 @@ def ros2_sim(
         for driver, context in robots:
             driver.setup(context)
         with stopping_by_signal(stop, then="the robot brakes"):
-            pace = "the system's time" if wall_time else f"/clock at {speed:g} times the speed of real time"
             typer.echo(f"{what} is on ROS 2, with {pace}; Ctrl-C ends it")
-            served.serve(drivers, speed, lambda: stop.is_raised)
+            bridge.serve(drivers, speed, lambda: stop.is_raised)
     finally:
         for driver in drivers.values():
             driver.close()
-    truths = {name: _truth(driver) for name, driver in drivers.items()}
-    if out is not None:
-        known = truths if len(truths) > 1 else next(iter(truths.values()))
-        out.write_text(json.dumps(known, indent=2) + "\n", encoding="utf-8")
-    for name, truth in truths.items():
-        contacts, touches = truth["contacts"], truth["touched_by_people"]
-        typer.echo(f"{name}: {truth['time_s']:.0f} s, {contacts} contacts, {touches} touches by people")
+    return {name: _truth(driver) for name, driver in drivers.items()}
 
 
 def _robots(
