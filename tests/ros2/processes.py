@@ -8,10 +8,11 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["Process", "until"]
+__all__ = ["Process", "stand_in_process", "until"]
 
 
 def until(condition: Callable[[], object], deadline_s: float, what: str) -> None:
@@ -20,6 +21,20 @@ def until(condition: Callable[[], object], deadline_s: float, what: str) -> None
     while not condition():
         assert time.monotonic() < end_s, f"after {deadline_s:g} s: {what}"
         time.sleep(0.01)
+
+
+@contextmanager
+def stand_in_process(*words: str | Path) -> Iterator[subprocess.Popen[str]]:
+    """Another node, by what follows ``python``; it has said that it runs, and is killed in the end."""
+    environment = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    process = subprocess.Popen([sys.executable, *words], stdout=subprocess.PIPE, text=True, env=environment)
+    try:
+        assert process.stdout is not None
+        assert "runs" in process.stdout.readline()
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
 
 
 class Process:

@@ -6,13 +6,12 @@ from tests.ros2 import ros  # isort: skip  # noqa: F401
 
 import json
 import math
-import os
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 import pytest
@@ -22,7 +21,7 @@ from mcap.reader import make_reader
 
 from explore_bt.interfaces import RobotContext
 from tests.ros2 import relay as spoilt
-from tests.ros2.processes import Process, until
+from tests.ros2.processes import Process, stand_in_process, until
 from tests.ros2.relay import Relay
 from tests.ros2.worlds import HALL, paced, robot_in
 
@@ -146,20 +145,8 @@ def test_every_fault_of_a_topic_stops_the_robot_with_its_reason_and_it_goes_on(r
         assert any(words in line for line in told), f"{words!r} in {told}"
 
 
-@contextmanager
-def lidar_node(*words: str) -> Iterator[subprocess.Popen[str]]:
-    script = Path(__file__).with_name("scan_node.py")
-    environment = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    process = subprocess.Popen(
-        [sys.executable, script, *words], stdout=subprocess.PIPE, text=True, env=environment
-    )
-    try:
-        assert process.stdout is not None
-        assert "runs" in process.stdout.readline()
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
+def lidar_node(*words: str) -> AbstractContextManager[subprocess.Popen[str]]:
+    return stand_in_process(Path(__file__).with_name("scan_node.py"), *words)
 
 
 @pytest.mark.slow

@@ -5,11 +5,10 @@ from __future__ import annotations
 from tests.ros2 import ros  # isort: skip  # noqa: F401
 
 import importlib
-import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +26,7 @@ from explore_bt.testing.controller_contract import require_limits
 from explore_bt.types import Estimate, MotionState, Pose2, Twist2, WheelOdometry
 from explore_bt.types import Path as Way
 from tests.ros2.build_nav2_msgs import build, can_build, preload
+from tests.ros2.processes import stand_in_process
 from tests.ros2.worlds import HALL, robot_in
 
 DT = 0.05
@@ -45,24 +45,13 @@ def nav2_msgs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     sys.path.remove(str(where))
 
 
-@contextmanager
-def stand_in(where: Path) -> Iterator[subprocess.Popen[str]]:
+def stand_in(where: Path) -> AbstractContextManager[subprocess.Popen[str]]:
     script = (
         f"import pathlib, sys; sys.path[:0] = [{str(where)!r}, {str(Path(__file__).parent)!r}]\n"
         f"from build_nav2_msgs import preload; preload(pathlib.Path({str(where)!r}))\n"
         "from stand_in_nav2 import main; main()"
     )
-    environment = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    process = subprocess.Popen(
-        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment
-    )
-    try:
-        assert process.stdout is not None
-        assert "runs" in process.stdout.readline()
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
+    return stand_in_process("-c", script)
 
 
 class Robot:
